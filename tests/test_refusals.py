@@ -250,8 +250,58 @@ REFUSED = {
     ),
     # flows
     "mirror": lambda: oscillator(mirror=[[1, 0], [0, -1]]),
+    "mirror raises IndexError": lambda: oscillator(mirror=lambda x: x[5]),
+    "mirror returns [nan, nan]": lambda: oscillator(mirror=lambda x: np.nan * x),
     "rest": decay,
     "nowhere.so": lambda: cv.flows.CompiledRates("nowhere.so"),
+    "give a better guess": lambda: cv.diagram(
+        cv.FlowProblem(lambda x, p: [x[0] ** 2 + 1 + p.a], [1.0], {"a": 1.0}), within=(0.5, 2.0)
+    ),
+    "must be functions by name": lambda: oscillator(events=[1]),
+    "must be a name with a function": lambda: oscillator(events={"wall": 1}),
+    "wall is 0 at x0": lambda: oscillator(events={"wall": lambda x, p: x[1]}),
+    "the event wall fails": lambda: oscillator(events={"wall": lambda x, p: x[5]}),
+    "has 1 names; the flow has 2 states": lambda: oscillator(states=("x",)),
+    "'x' is there twice": lambda: oscillator(states=("x", "x")),
+    "that of a measure": lambda: oscillator(states=("x", "period")),
+    "must be names": lambda: oscillator(states="xy"),
+    "period is inf at the start": lambda: oscillator(period=np.inf),
+    "period = '2' must be a positive number": lambda: oscillator(period="2"),
+    "period raises AttributeError: there is no parameter 'omega'": lambda: oscillator(
+        period=lambda p: p.omega
+    ),
+    "called with (x, p, t), as there is period=": lambda: cv.FlowProblem(
+        lambda x, p: [p.a - x[0]], [1.0], {"a": 1.0}, period=2.0
+    ),
+    "it is called with (x, p, t)": lambda: cv.FlowProblem(
+        lambda x, t, p: [p.a * x[0] + np.cos(t)], [1.0], {"a": 1.0}, period=2.0 * np.pi
+    ),
+    "period = 6 at the start is no period of f(x, p, t) in t": lambda: cv.FlowProblem(
+        lambda x, p, t: [np.cos(p.w * t) - x[0]], [0.0], {"w": 0.5}, period=lambda p: 3.0 / p.w
+    ),
+    "settings = 'loose' must be values by name": lambda: oscillator(settings="loose"),
+    "there is no 'longst' of a flow (did you mean 'longest'": lambda: oscillator(settings={"longst": 10.0}),
+    "near = -1.0 must be a positive number": lambda: oscillator(settings={"near": -1.0}),
+    "did you mean 'gain'": lambda: cv.FlowProblem(lambda x, p: [p.gai * x[0]], [1.0], {"gain": 1.0}),
+    "parameters have names: p.a": lambda: cv.FlowProblem(lambda x, a: [a * x[0]], [1.0], {"a": 1.0}),
+    "did you mean 'm'": lambda: cv.diagram(oscillator(), over="M", within=(0, 2)),
+    "one of 'a', 'b'": lambda: cv.diagram(
+        cv.FlowProblem(lambda x, p: [p.a - p.b * x[0]], [1.0], {"a": 1.0, "b": 1.0}), within=(0, 2)
+    ),
+    "there is no parameter 'M' (did you mean": lambda: oscillator().attractor(M=3.0),
+    "x0 = [nan, 0.0] must be finite": lambda: oscillator().attractor([np.nan, 0.0]),
+    "transient = nan must be a positive time": lambda: oscillator().attractor(transient=np.nan),
+    "transient = -1.0 must be a positive time": lambda: oscillator().attractor(transient=-1.0),
+    "longest = 0 must be a whole number, 1 or more": lambda: oscillator().attractor(longest=0),
+    "doublings = 1.5 must be a whole number": lambda: oscillator().attractor(doublings=1.5),
+    "states must be finite": lambda: oscillator().cycle(range(6), np.full((6, 2), np.nan)),
+    "times must be numbers": lambda: oscillator().cycle("abc", np.ones((6, 2))),
+    "rounds = 0 must be a whole number": lambda: oscillator().cycle(range(6), np.ones((6, 2)), rounds=0),
+    "low < high": lambda: oscillator().population("m", box=[(1, -1), (-1, 1)]),
+    "give 2 pairs": lambda: oscillator().population(box=[(0.0, 1.0), (1.0,)]),
+    "(1.0, inf)]: give 2 pairs": lambda: oscillator().population(box=[(0.0, 1.0), (1.0, np.inf)]),
+    "around has shape (4, 3)": lambda: oscillator().population(around=np.ones((4, 3))),
+    "at = nan": lambda: cv.basins(oscillator().population(), at=np.nan, points=4),
     # machines, words and orbits
     "restitution = 1.4": lambda: Absorber(**NUMBERS | {"restitution": 1.4}),
     "begins at": lambda: PAPER.symmetric_orbit(0.1),

@@ -5,11 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contvines as cv
-from tools.flow_demos import fields
+from tests.contvines.flows.shooting import cycle, unit_circle, van_der_pol
+from tools.flow_demos.listed import DEMOS
 
 pytestmark = pytest.mark.slow
-
-B = 2.5
 
 
 def brusselator(x, p):
@@ -18,71 +17,28 @@ def brusselator(x, p):
 
 @pytest.fixture(scope="module")
 def expected():
-    """Period and multiplier: Newton's method on the return to x = 1, with scipy's DOP853 and the variational equations."""
-
-    def rate(t, y):
-        x, v, matrix = y[0], y[1], y[2:].reshape(2, 2)
-        jacobian = np.array([[2 * x * v - B - 1.0, x**2], [B - 2 * x * v, -(x**2)]])
-        return np.concatenate(
-            [[1.0 - (B + 1.0) * x + x**2 * v, B * x - x**2 * v], (jacobian @ matrix).ravel()]
-        )
-
-    v, period = 1.74178, 6.57728
-    for _ in range(6):
-        start = np.array([1.0, v, 1.0, 0.0, 0.0, 1.0])
-        end = solve_ivp(rate, (0.0, period), start, method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
-        speed, matrix = rate(0.0, end)[:2], end[2:].reshape(2, 2)
-        step = np.linalg.solve(
-            np.column_stack([matrix[:, 1] - [0.0, 1.0], speed]), [1.0 - end[0], v - end[1]]
-        )
-        v, period = v + step[0], period + step[1]
-    return period, float(np.linalg.det(matrix))
+    period, matrix = cycle(brusselator, [1.0, 1.74178], 6.57728, b=2.5)
+    return period, np.linalg.det(matrix)
 
 
 @pytest.mark.parametrize(("degree", "error"), [(2, 1e-3), (4, 1e-5), (6, 1e-6)])
 def test_periods_and_multipliers_are_as_exact_as_they_say(degree, error, expected):
     period, multiplier = expected
-    orbit = cv.FlowProblem(brusselator, [1.0, 2.0], {"b": B}, degree=degree, error=error).attractor()
+    orbit = cv.FlowProblem(brusselator, [1.0, 2.0], {"b": 2.5}, degree=degree, error=error).attractor()
     assert abs(orbit.period - period) < orbit.period_error + 1e-12
     assert orbit.period_error < 10.0 * abs(orbit.period - period) + 1e-10
     assert abs(orbit.multipliers[0] - multiplier) < orbit.multiplier_errors[0] + 1e-12
 
 
 @pytest.mark.parametrize("degree", [3, 5])
-def test_special_points_are_as_exact_as_they_say(degree):
-    """Langford's flow (COCO's demo): the Neimark-Sacker point in closed form; Bautin's normal form: the fold."""
-
-    seed = cv.FlowProblem(
-        lambda x, p: fields.langford(x, p.rho, np), [0.3, 0.4, 0.0], {"rho": 1.5}, degree=degree, error=1e-4
-    ).attractor()
-    graph = cv.diagram(seed, over="rho", within=(0.2, 2.0), depth=0)
-    (point,) = graph.of_kind("neimark-sacker")
-    exact = 0.51 / (1.3 - 0.343 / 3 - 0.51 * 0.7)
-    assert abs(point.value - exact) <= point.location_error
-    flow = cv.FlowProblem(
-        lambda x, p: fields.hopf(x, p.a, np), [0.0, 0.0], {"a": -1.0}, degree=degree, error=1e-4
-    )
-    graph = cv.diagram(flow, over="a", within=(-1.0, 1.0), depth=1)
-    (point,) = graph.of_kind("fold")
-    assert abs(point.value + 0.25) <= point.location_error
-
-
-def test_a_saddle_node_on_the_circle_ends_a_branch():
-    """angle' = m - cos(angle) on the unit circle: the period is 2 pi / sqrt(m^2 - 1)."""
-
-    def f(x, p):
-        inside = 1.0 - x[0] ** 2 - x[1] ** 2
-        return [x[0] * inside - x[1] * (p.m - x[0]), x[1] * inside + x[0] * (p.m - x[0])]
-
-    graph = cv.diagram(
-        cv.FlowProblem(f, [1.0, 0.0], {"m": 2.0}).attractor(), over="m", within=(0.5, 3.0), depth=0
-    )
-    branch, (end,) = graph["B1"], graph.of_kind("homoclinic")
-    inner = branch.values > end.value + 1e-9
-    exact = 2.0 * np.pi / np.sqrt(branch.values[inner] ** 2 - 1.0)
-    assert np.abs(branch.measure("period")[inner] / exact - 1.0).max() < 1e-9
-    assert abs(end.value - 1.0) < end.location_error
-    assert end.note.startswith("saddle-node on the cycle")
+@pytest.mark.parametrize(("name", "kind"), [("langford", "neimark-sacker"), ("hopf", "fold")])
+def test_special_points_are_as_exact_as_they_say(degree, name, kind):
+    """COCO's demos, with closed forms of both points."""
+    demo = next(demo for demo in DEMOS if demo.name == name)
+    flow = cv.FlowProblem(demo.rates, demo.u, demo.p, degree=degree, error=1e-4)
+    graph = cv.diagram(flow.attractor() if demo.settles else flow, within=demo.within, depth=1 - demo.settles)
+    (point,) = graph.of_kind(kind)
+    assert abs(point.value - dict(demo.exact)[kind]) <= point.location_error
 
 
 def test_a_canard_explosion_is_one_stable_branch():
@@ -90,18 +46,18 @@ def test_a_canard_explosion_is_one_stable_branch():
     a = 1 - e/8 - 3 e^2/32 - 173 e^3/1024 + O(e^4); Krupa and Szmolyan 2001 show that all its cycles are stable."""
     e = 0.01
     flow = cv.FlowProblem(
-        lambda x, p: [x[1] - x[0] ** 3 / 3 + x[0], e * (p.a - x[0])], [1.1, 1.1**3 / 3 - 1.1], {"a": 1.1}
+        lambda x, p: [(x[1] - x[0] ** 3 / 3 + x[0]) / e, p.a - x[0]], [1.2, 1.2**3 / 3 - 1.2], {"a": 1.2}
     )
-    graph = cv.diagram(flow, over="a", within=(0.95, 1.1), settings={"max_branches": 2})
+    graph = cv.diagram(flow, over="a", within=(0.0, 1.2))
     assert graph["HB1"].criticality == "supercritical"
     branch = graph["B2"]
-    assert branch.values[-1] == 0.95
+    assert branch.values[-1] == 0.0
     assert [p.kind for p in graph.special.values() if p.branch == "B2"] == ["end"]
     assert branch.stable[1:].all()
     high = branch.measure("max x0")
     canards = (high > 1.4) & (high < 1.95)
     expected = 1.0 - e / 8 - 3 * e**2 / 32 - 173 * e**3 / 1024
-    assert canards.sum() > 10
+    assert canards.sum() > 10 and len(branch) < 400
     assert np.allclose(branch.values[canards], expected, atol=1e-8)
     # headless canards turn at the fold, those with a head on the other side of it
     assert branch.measure("min x0")[canards].max() > -0.5 > branch.measure("min x0").min()
@@ -111,8 +67,7 @@ def test_a_canard_explosion_is_one_stable_branch():
 def test_a_planar_multiplier_is_that_of_liouville():
     """Van der Pol at mu = 30: log of the multiplier against the trace, integrated along a simulation with scipy's Radau."""
     mu = 30.0
-    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [2.0, 0.0], {"mu": mu})
-    orbit = flow.attractor()
+    orbit = cv.FlowProblem(van_der_pol, [2.0, 0.0], {"mu": mu}).attractor()
 
     def rate(t, y):
         return [y[1], mu * (1 - y[0] ** 2) * y[1] - y[0], mu * (1 - y[0] ** 2)]
@@ -139,8 +94,6 @@ def saddle(x, p):
 @pytest.mark.parametrize(("a", "b"), [(3.9, 1.0), (11.0, 11.0)])
 def test_simulated_multipliers_beside_strong_saddles(a, b):
     """A growth of 4e10 (a = 3.9), and one of 1e30 beside 1e-30, of which a product of matrices has nothing left."""
-    t = np.linspace(0.0, 2.0 * np.pi, 201)
-    states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t], axis=1)
-    orbit = cv.FlowProblem(saddle, states[0], {"a": a, "b": b}).cycle(t, states)
+    orbit = cv.FlowProblem(saddle, [1.0, 0.0, 0.0, 0.0], {"a": a, "b": b}).cycle(*unit_circle(4))
     expected = np.exp(2.0 * np.pi * np.array([a, 0.0, -min(2.0, b), -max(2.0, b)]))
     assert orbit.simulated_multipliers() == pytest.approx(expected, rel=1e-7, abs=0.0)

@@ -5,26 +5,9 @@ import pytest
 
 import contvines as cv
 from contvines.flows.orbit import CycleOrbit
+from tests.contvines.flows.shooting import unit_circle
 
 pytestmark = pytest.mark.slow
-
-
-def chemical(s0):
-    """Demo plp of AUTO-07p."""
-
-    def f(x, p):
-        rate = p.rho * x[0] * x[1] / (1 + x[0] + 0.1 * x[0] ** 2)
-        return [s0 - x[0] - rate, 0.2 * (500 - x[1]) - rate]
-
-    return f
-
-
-def test_an_isola_that_begins_where_it_was_adapted_is_not_closed_at_once():
-    flow = cv.FlowProblem(chemical(111.0), [40.0, 95.0], {"rho": 4.0})
-    graph = cv.diagram(flow.attractor(), over="rho", within=(2.5, 6.0))
-    assert graph["B1"].closed
-    # AUTO-07p prints 2.98629 and 4.72213
-    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([2.98629, 4.72213], abs=6e-6)
 
 
 def test_cycles_in_an_invariant_plane_are_one_branch():
@@ -39,19 +22,6 @@ def test_cycles_in_an_invariant_plane_are_one_branch():
     assert cycles[0].range == pytest.approx((0.0, 1.0), abs=1e-9)
 
 
-def test_cycles_that_grow_to_a_hundred_times_where_they_began_go_on():
-    """Demo ops of AUTO-07p: at its Hopf point the equations bend within 0.04, and the cycles grow to a size of 4."""
-
-    def f(x, p):
-        return [(-2 * (x[0] ** 3 / 3 - x[0]) + (x[2] - x[0]) / 4 - x[1]) / 0.5, x[0] - p.c, (x[0] - x[2]) / 4]
-
-    graph = cv.diagram(cv.FlowProblem(f, [0.9, 1.314, 0.9], {"c": 0.9}), over="c", within=(0.9, 0.95))
-    assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([0.937563], abs=6e-7)
-    # AUTO-07p prints 0.921972 and 0.928528
-    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([0.921972, 0.928528], abs=6e-7)
-    assert np.ptp(graph["B2"].values) == pytest.approx(0.037563, abs=1e-6)
-
-
 def beside(power, gain, at):
     """r' = r (1 - r^2), turning once in 2 pi; z' = z (a - z^power); w' = (gain (z^power - at) + 0.3 i) w - w |w|^2.
 
@@ -64,20 +34,16 @@ def beside(power, gain, at):
         growth = gain * (size - at) - v**2 - w**2
         return [inward * c - s, inward * s + c, z * (p.a - size), growth * v - 0.3 * w, 0.3 * v + growth * w]
 
-    t = np.linspace(0.0, 2.0 * np.pi, 101)
-    states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t, 0.0 * t], axis=1)
-    return cv.FlowProblem(f, states[0], {"a": -0.2}).cycle(t, states)
+    return cv.FlowProblem(f, [1.0, 0.0, 0.0, 0.0, 0.0], {"a": -0.2}).cycle(*unit_circle(5))
 
 
-def test_a_pair_passes_the_circle_while_its_states_are_zero():
-    """Derivatives by them are below the least normal number, and of few bits."""
-    graph = cv.diagram(beside(2, 1.0, 0.05), over="a", within=(-0.3, 0.2), depth=1)
-    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx([0.05, 0.05], abs=1e-8)
-
-
-def test_a_pair_passes_the_circle_within_a_part_of_the_first_step_behind_a_branch_point():
-    graph = cv.diagram(beside(1, 3e3, 1e-7), over="a", within=(-0.3, 0.2), depth=1)
-    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx([1e-7], abs=1e-11)
+@pytest.mark.parametrize(
+    ("power", "gain", "values", "error"), [(2, 1.0, [0.05, 0.05], 1e-8), (1, 3e3, [1e-7], 1e-11)]
+)
+def test_a_pair_passes_the_circle_while_its_states_are_zero(power, gain, values, error):
+    """Derivatives by them are below the least normal number, and of few bits; or it passes within a part of the first step behind a branch point."""
+    graph = cv.diagram(beside(power, gain, values[0]), over="a", within=(-0.3, 0.2), depth=1)
+    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx(values, abs=error)
 
 
 def test_a_hopf_point_within_a_part_of_the_first_step_behind_a_branch_point():
@@ -90,39 +56,6 @@ def test_a_hopf_point_within_a_part_of_the_first_step_behind_a_branch_point():
     assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([1e-7], abs=1e-11)
 
 
-def test_folds_of_canards_where_the_parameter_stands_still():
-    """FitzHugh and Nagumo: v -> -v, w -> 7/4 - w, I -> 7/4 - I leaves all as it is. Between the folds and their Hopf points the parameter keeps 15 digits."""
-    flow = cv.FlowProblem(
-        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, 0.08 * (x[0] + 0.7 - 0.8 * x[1])],
-        [-1.2, -0.6],
-        {"I": 0.0},
-    )
-    graph = cv.diagram(flow, over="I", within=(0.0, 2.0))
-    one, other = graph.of_kind("fold")
-    assert one.value + other.value == pytest.approx(1.75, abs=1e-11)
-    # the growth along the cycle, the integral of 1 - v^2 - 0.064, is zero at a fold (Liouville)
-    x = one.orbit(np.linspace(0.0, one.orbit.period, 20001))[:-1, 0]
-    assert np.mean(1.0 - x**2 - 0.064) * one.orbit.period == pytest.approx(0.0, abs=1e-5)
-    assert np.abs(np.diff(graph["B2"].stable.astype(int))).sum() == 2  # stable between the folds alone
-
-
-def neuron(x, p):
-    """Hindmarsh and Rose."""
-    return [
-        x[1] - x[0] ** 3 + 3.0 * x[0] ** 2 - x[2] + p.current,
-        1.0 - 5.0 * x[0] ** 2 - x[1],
-        0.01 * (4.0 * (x[0] + 1.6) - x[2]),
-    ]
-
-
-def test_cycles_of_a_bursting_neuron_go_on_after_their_canards():
-    """With the phase of the chunk before, no step was possible from 1.3546 on."""
-    flow = cv.FlowProblem(neuron, [-1.3, -7.5, 1.2], {"current": 1.3})
-    graph = cv.diagram(flow, over="current", within=(1.3, 1.5), depth=1)
-    cycles = next(b for b in graph.branches.values() if b.description["word"] == "cycle")
-    assert cycles.range[1] == 1.5
-
-
 def test_a_branch_whose_mesh_has_no_equal_halves_ends_where_its_cycles_become_shorter_ones():
     """As those of a neuron do, which are born at a Hopf point. Doubled cycles of Lur'e's feedback begin at alpha = 0.63030200616 (shooting, docs/demos_cycles.md)."""
     flow = cv.FlowProblem(
@@ -130,11 +63,14 @@ def test_a_branch_whose_mesh_has_no_equal_halves_ends_where_its_cycles_become_sh
         [0.0, 0.0, 0.0],
         {"alpha": 1.1},
     )
-    doubled = cv.diagram(flow, over="alpha", within=(0.6, 1.2), depth=2).branches["B3"]
+    whole = cv.diagram(flow, over="alpha", within=(0.55, 1.2), depth=2)
+    doubled, born = whole.branches["B3"], whole["PD1"]
+    assert born.criticality == "supercritical" and whole["PD2"].branch == "B3"
+    assert doubled.measure("period")[0] == pytest.approx(2.0 * born.orbit.period, rel=1e-6)
     u, p = doubled.points[-1], float(doubled.values[-1])
     problem = doubled.problem.with_unknowns(u, p, doubled.problem.intervals, 1)
-    graph = cv.diagram(CycleOrbit(problem, u, p), over="alpha", within=(0.6, 1.2), depth=0)
-    (end,) = graph.of_kind("period-doubling")
+    graph = cv.diagram(CycleOrbit(problem, u, p), over="alpha", within=(0.55, 1.2), depth=0)
+    end = max(graph.of_kind("period-doubling"), key=lambda point: point.value)
     assert end.value == pytest.approx(0.63030200616, abs=1e-9)
     assert graph["B1"].range[1] == end.value
 

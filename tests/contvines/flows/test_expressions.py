@@ -8,6 +8,7 @@ import contvines as cv
 from contvines.flows import read_ode
 
 t = sympy.Symbol("t")
+PERIOD = 6.6632868593231301  # van der Pol's cycle at mu = 1: Urabe and others; many digits in the literature
 
 ODE = """# van der Pol with a function and a fixed quantity
 par mu=1, k=1.0
@@ -25,10 +26,7 @@ done
 def test_sympy_gives_what_python_gives():
     x, y, mu = sympy.symbols("x y mu")
     flow = cv.FlowProblem.from_sympy([y, mu * (1 - x**2) * y - x], [x, y], [1.0, 0.0], {"mu": 1.0})
-    period = flow.attractor().period
-    assert period == pytest.approx(
-        6.6632868593231301, abs=1e-8
-    )  # Urabe and others; many digits in the literature
+    assert flow.attractor().period == pytest.approx(PERIOD, abs=1e-8)
     with pytest.raises(ValueError, match="mu"):
         cv.FlowProblem.from_sympy([y, mu * y - x], [x, y], [1.0, 0.0], {"nu": 1.0})
 
@@ -50,47 +48,47 @@ def test_functions_of_time_and_absolute_values_of_sympy():
     assert slope == pytest.approx(np.array([[0.0, 1.0], [-np.cos(1.2), -0.3]]), abs=1e-14)
 
 
-def test_a_file_of_xpp(tmp_path):
-    (tmp_path / "vdp.ode").write_text(ODE)
-    flow = read_ode(tmp_path / "vdp.ode")
+@pytest.fixture
+def read(tmp_path):
+    """Reads a file of XPP with this text."""
+
+    def go(text, **options):
+        (tmp_path / "flow.ode").write_bytes(text.encode("latin-1"))
+        return read_ode(tmp_path / "flow.ode", **options)
+
+    return go
+
+
+def test_a_file_of_xpp(read):
+    flow = read(ODE)
     assert flow.values.values == {"mu": 1.0, "k": 1.0}
     assert np.array_equal(flow.x0, [1.0, 0.0])
-    assert flow.attractor().period == pytest.approx(6.6632868593231301, abs=1e-8)
+    assert flow.attractor().period == pytest.approx(PERIOD, abs=1e-8)
 
 
-def test_names_that_begin_like_words_of_xpp(tmp_path):
+def test_names_that_begin_like_words_of_xpp(read):
     """``auxin`` is a state, ``partial`` and ``i`` are fixed quantities."""
-    lines = [
-        "par a=2 b = 0.5, c=1",
-        "p d=4",
-        "init auxin=1 set=2",
-        "partial=a*auxin",
-        "i = b + set",
-        "number e=3",
-    ]
-    rates = [
-        "auxin' = partial - i*c",
-        "dset/dt=d*auxin-e*set",
-        "initial'=-initial",
-        "aux power=partial",
-        "done",
-    ]
-    (tmp_path / "names.ode").write_text("\n".join([*lines, *rates]))
-    flow = read_ode(tmp_path / "names.ode")
+    flow = read("""par a=2 b = 0.5, c=1
+p d=4
+init auxin=1 set=2
+partial=a*auxin
+i = b + set
+number e=3
+auxin' = partial - i*c
+dset/dt=d*auxin-e*set
+initial'=-initial
+aux power=partial
+done""")
     assert flow.states == ("auxin", "set", "initial")
     assert flow.values.values == {"a": 2.0, "b": 0.5, "c": 1.0, "d": 4.0, "e": 3.0}
     assert flow.x0.tolist() == [1.0, 2.0, 0.0]
-    assert flow.field(np.array([[1.5, 0.5, 2.0]]), 2.0)[0].tolist() == [
-        2.0,
-        4.5,
-        -2.0,
-    ]  # 2 x 1.5 - (0.5 + 0.5), 4 x 1.5 - 3 x 0.5
+    # 2 x 1.5 - (0.5 + 0.5), 4 x 1.5 - 3 x 0.5
+    assert flow.field(np.array([[1.5, 0.5, 2.0]]), 2.0).tolist() == [[2.0, 4.5, -2.0]]
 
 
-def test_a_file_of_xpp_with_lines_that_go_on_and_derived_parameters(tmp_path):
+def test_a_file_of_xpp_with_lines_that_go_on_and_derived_parameters(read):
     """The model of Morris and Lecar (Rinzel and Ermentrout 1998); its Hopf points are those of docs/demos.md, solved in thirty digits."""
-    (tmp_path / "ml.ode").write_text(
-        """# Morris and Lecar
+    flow = read("""# Morris and Lecar
 p Iapp=50, gCa=4.4
 param gK=8 C=20
 !ratio=1/C
@@ -106,24 +104,17 @@ aux Ica=gCa*minf(V)*(V-120)
 export {v} {w}
 @ xp=V,yp=w
 done
-"""
-    )
-    flow = read_ode(tmp_path / "ml.ode")
+""")
     assert list(flow.values.values) == ["iapp", "gca", "gk", "c"]
     found = cv.diagram(flow, over="iapp", within=(0, 300), depth=0).of_kind("hopf")
     assert [point.value for point in found] == pytest.approx([93.857618374, 212.0188161], abs=1e-7)
-
-
-def test_numbers_of_lines_count_those_that_go_on(tmp_path):
-    (tmp_path / "bad.ode").write_text("par a=1\nx'=-a*x \\\n  +1\ny'=b\ndone\n")
-    with pytest.raises(ValueError, match="line 4.*'b' is no state"):
-        read_ode(tmp_path / "bad.ode")
 
 
 @pytest.mark.parametrize(
     ("line", "words"),
     [
         ("x'=a*x", "'a'"),
+        ("par a=1\nx'=-a*x \\\n  +1\ny'=b", "line 4.*'b' is no state"),
         ("x'=__import__('os')", "can be read"),
         ("x'=x.real", "can be read"),
         ("par a", "name=value"),
@@ -154,18 +145,15 @@ def test_numbers_of_lines_count_those_that_go_on(tmp_path):
         ("par a=1\nb(s)=s*t\nx'=b(x)-a*x", "line 2.*depends on the time t"),
     ],
 )
-def test_what_cannot_be_read_is_told_with_its_line(tmp_path, line, words):
-    (tmp_path / "bad.ode").write_text(line + "\n")
+def test_what_cannot_be_read_is_told_with_its_line(read, line, words):
     with pytest.raises(ValueError, match=words):
-        read_ode(tmp_path / "bad.ode")
+        read(line + "\n")
 
 
-def test_a_forced_file_of_xpp_with_words_of_python(tmp_path):
+def test_a_forced_file_of_xpp_with_words_of_python(read):
     """x' = -lambda x + cos t settles on (lambda cos t + sin t) / (lambda^2 + 1)."""
-    (tmp_path / "forced.ode").write_bytes(
-        b"# \xe9tude\npar lambda=2\nif=cos(t)\ndecay(t)=lambda*t\nx'=if-decay(x)\ndone\n"
-    )
-    flow = read_ode(tmp_path / "forced.ode", period=2 * np.pi)
+    text = "# \xe9tude\npar lambda=2\nif=cos(t)\ndecay(t)=lambda*t\nx'=if-decay(x)\ndone\n"
+    flow = read(text, period=2 * np.pi)
     assert flow.attractor()(1.0)[0] == pytest.approx((2 * np.cos(1.0) + np.sin(1.0)) / 5, abs=1e-7)
 
 

@@ -7,6 +7,7 @@ import pytest
 
 import contvines as cv
 from contvines.flows.cycles import CycleProblem
+from tests.contvines.flows.shooting import nerve
 from tools.flow_demos.listed import DEMOS
 
 pytestmark = pytest.mark.slow
@@ -76,12 +77,8 @@ def test_no_fold_beside_a_hopf_point_by_the_rounding_of_the_phase(formula, monke
             work.residual[self.states] = formula(row.reshape(-1), nodes.reshape(-1), origin.reshape(-1))
 
     monkeypatch.setattr(CycleProblem, "evaluate", rounded_otherwise)
-    flow = cv.FlowProblem(
-        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])],
-        [-1.2, -0.6],
-        {"I": 0.70, "e": 0.9374},
-    )
-    graph = cv.diagram(flow, over="I", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"current": 0.70, "e": 0.9374})
+    graph = cv.diagram(flow, over="current", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
     ((hopf,), (fold,)) = graph.of_kind("hopf"), graph.of_kind("fold")
     # the one that is left is far beyond what is known of both
     assert hopf.value - fold.value > 100.0 * (hopf.location_error + fold.location_error)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.flows.shooting import unit_circle
 
 pytestmark = pytest.mark.slow
 
@@ -49,15 +50,9 @@ def test_half_a_turn_in_the_plane_across_the_cycle(sign, word):
     def rates(v, w, p):
         return p.m * v - sign * v**3, -0.5 * w
 
-    times = np.linspace(0.0, 2.0 * np.pi, 101)
-    circle = np.column_stack([np.cos(times), np.sin(times), np.zeros(101)])
-
-    def f(x, p):
-        # the frame is that of an angle between -pi and pi: half a turn makes -v of v, and the rates are odd
-        return twisted(rates, 0.5, 0.2)(x, p)
-
-    flow = cv.FlowProblem(f, [1.0, 0.0, 0.1], {"m": -0.3})
-    graph = cv.diagram(flow.cycle(times, circle), over="m", within=(-0.4, 0.2), depth=1)
+    # the frame is that of an angle between -pi and pi: half a turn makes -v of v, and the rates are odd
+    flow = cv.FlowProblem(twisted(rates, 0.5, 0.2), [1.0, 0.0, 0.1], {"m": -0.3})
+    graph = cv.diagram(flow.cycle(*unit_circle(3)), over="m", within=(-0.4, 0.2), depth=1)
     point = graph["PD1"]
     assert point.value == pytest.approx(0.0, abs=1e-8)
     assert point.criticality == word
@@ -76,9 +71,7 @@ def test_a_pitchfork_of_cycles(mirror, bent):
         return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1], rise]
 
     flow = cv.FlowProblem(f, [1.0, 0.0, 0.0], -0.2, mirror=mirror)
-    times = np.linspace(0.0, 2.0 * np.pi, 101)
-    circle = np.column_stack([np.cos(times), np.sin(times), np.zeros(101)])
-    graph = cv.diagram(flow.cycle(times, circle), over="p", within=(-0.25, 0.1), depth=1)
+    graph = cv.diagram(flow.cycle(*unit_circle(3)), over="p", within=(-0.25, 0.1), depth=1)
     (point,) = graph.of_kind("branch-point" if mirror is None else "symmetry-breaking")
     assert point.value == pytest.approx(0.0, abs=1e-10)
     assert point.coefficient == pytest.approx(2.0 * np.pi * (bent + 0.15), rel=1e-9)

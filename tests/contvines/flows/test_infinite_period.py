@@ -80,3 +80,26 @@ def test_two_coupled_oscillators_whose_common_rotation_stands_still():
     assert "comes to rest as a whole" in end.note
     assert {point.kind for point in graph.special.values()} == {"end", "homoclinic"}
     assert not graph.unresolved and graph["B1"].stable.all()
+
+
+def round_the_circle(x, p):
+    """angle' = w - sin(angle) on the unit circle: the period is 2 pi / sqrt(w^2 - 1)."""
+    turn, inward = p.w - x[1], 1.0 - x[0] ** 2 - x[1] ** 2
+    return [inward * x[0] - turn * x[1], inward * x[1] + turn * x[0]]
+
+
+@pytest.mark.parametrize(
+    ("settings", "exact"),
+    [({}, 1.0), ({"longest": 10.0}, np.sqrt(1.0 + 3.0 / 100.0))],  # w^2 - 1 = 3 at the start
+)
+def test_a_saddle_node_on_the_circle_ends_a_branch(settings, exact):
+    """Or the longest period that is asked for does, as a multiple of that of the start."""
+    orbit = cv.FlowProblem(round_the_circle, [1.0, 0.0], {"w": 2.0}, settings=settings).attractor()
+    graph = cv.diagram(orbit, over="w", within=(0.5, 3.0), depth=0)
+    branch, (end,) = graph["B1"], graph.of_kind("homoclinic")
+    inner = branch.values > end.value + 1e-9
+    periods = 2.0 * np.pi / np.sqrt(branch.values[inner] ** 2 - 1.0)
+    assert np.abs(branch.measure("period")[inner] / periods - 1.0).max() < 1e-9
+    assert abs(end.value - exact) < (1e-8 if settings else end.location_error)
+    if not settings:
+        assert end.note.startswith("saddle-node on the cycle")

@@ -2,19 +2,19 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import contvines as cv
 from contvines.flows.simulation import March
+from tests.contvines.flows.shooting import born, landau, run
+from tools.demos.demo import NUMBERS
+from tools.flow_demos.fields import hopf
 
 pytestmark = pytest.mark.slow
 
 
 def radial(x, p):
     """r' = r (m + r^2 - r^4), angle' = 1: at rest and a cycle, parted by r^2 = (1 - sqrt(1 + 4 m)) / 2."""
-    square = x[0] ** 2 + x[1] ** 2
-    growth = p.m + square - square**2
-    return [growth * x[0] - x[1], x[0] + growth * x[1]]
+    return hopf(x, p.m, NUMBERS)
 
 
 def duffing(x, p, t):
@@ -26,16 +26,17 @@ def flow():
     return cv.FlowProblem(radial, [0.1, 0.0], {"m": -0.1})
 
 
+def kinds(flow, starts, at):
+    """What the starts settle on."""
+    return [one.kind for one in flow.population().settle(np.array(starts), at)[0]]
+
+
 def test_motions_go_on_as_by_scipy(flow):
     starts = np.random.default_rng(1).uniform(-1.5, 1.5, (5, 2))
     march = March(flow.field, -0.1, starts, np.ones(2))
     march.go(np.arange(5), 10000, until=7.0)
     assert (march.t == 7.0).all()
-    for start, end in zip(starts, march.x):
-        exact = solve_ivp(
-            lambda t, x: radial(x, flow.field.values.at(-0.1)), (0.0, 7.0), start, rtol=1e-11, atol=1e-12
-        )
-        assert end == pytest.approx(exact.y[:, -1], abs=1e-5)
+    assert march.x == pytest.approx(np.array([run(radial, start, 7.0, m=-0.1) for start in starts]), abs=1e-5)
 
 
 def test_each_start_reaches_what_its_radius_says(flow):
@@ -43,9 +44,8 @@ def test_each_start_reaches_what_its_radius_says(flow):
     starts = population.starts(64, 3, -0.1)
     motions, index, mirrored = population.settle(starts, -0.1)
     inside = (starts**2).sum(axis=1) < (1.0 - np.sqrt(0.6)) / 2.0
-    assert sorted(m.word for m in motions) == ["cycle", "equilibrium"]
     words = np.array([motions[k].word for k in index])
-    assert (words == np.where(inside, "equilibrium", "cycle")).all()
+    assert len(motions) == 2 and (words == np.where(inside, "equilibrium", "cycle")).all()
     assert not mirrored.any()
 
 
@@ -54,8 +54,7 @@ def test_mirror_images_are_told_apart():
         lambda x, p: [x[1], x[0] - x[0] ** 3 - p.c * x[1]], [1.0, 0.0], {"c": 0.5}, mirror=lambda x: -x
     )
     motions, index, mirrored = flow.population().settle(np.array([[1.1, 0.0], [-0.9, 0.0], [0.8, 0.1]]), 0.5)
-    assert [m.word for m in motions] == ["equilibrium"]
-    assert index.tolist() == [0, 0, 0]
+    assert [m.word for m in motions] == ["equilibrium"] and not index.any()
     assert mirrored.tolist() == [False, True, False]
 
 
@@ -71,22 +70,16 @@ def test_what_escapes_and_what_does_not_recur():
         abs(motions[0].exponent - 0.9056) < 4 * motions[0].error + 0.05
     )  # Sprott, Chaos and Time-Series Analysis, 2003
     away = cv.FlowProblem(lambda x, p: [x[0] ** 2 + p.a], [0.0], {"a": 1.0})
-    motions, index, _ = away.population().settle(np.array([[0.0], [1.0]]), 1.0)
-    assert [m.kind for m in motions] == ["escaped"]
+    assert kinds(away, [[0.0], [1.0]], 1.0) == ["escaped"]
 
 
 def test_two_rates_that_share_no_period_make_a_torus():
     def rings(x, p):
-        return [*ring(x[:2], 1.0), *ring(x[2:], p.turn)]
+        pairs = landau(x[:2], p), landau(x[2:], p)
+        return [*pairs[0], *(2**0.5 * rate for rate in pairs[1])]
 
-    def ring(x, turn):
-        growth = 1 - x[0] ** 2 - x[1] ** 2
-        return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1]]
-
-    flow = cv.FlowProblem(rings, [0.5, 0.1, 0.5, 0.1], {"turn": 2**0.5})
-    motions, index, _ = flow.population().settle(
-        np.array([[0.6, 0.1, 0.9, 0.3], [0.2, 0.9, -0.4, 0.3]]), 2**0.5
-    )
+    flow = cv.FlowProblem(rings, [0.5, 0.1, 0.5, 0.1], {"mu": 1.0})
+    motions, _, _ = flow.population().settle(np.array([[0.6, 0.1, 0.9, 0.3], [0.2, 0.9, -0.4, 0.3]]), 1.0)
     assert [(m.kind, round(m.exponent, 2)) for m in motions] == [("quasi-periodic", 0.0)]
 
 
@@ -119,15 +112,8 @@ def test_basins_of_a_forced_flow():
     assert [a.word for a in found.attractors] == ["cycle", "cycle"]
     for i, j in ((0, 0), (3, 2)):
         start = [found.x[j], found.y[i]]
-        end = solve_ivp(
-            lambda t, x: duffing(x, flow.field.values.at(1.6), t),
-            (0.0, 400 * np.pi / 1.6),
-            start,
-            rtol=1e-9,
-            atol=1e-10,
-        ).y[:, -1]
-        other = flow.attractor(start)
-        assert np.abs(end - other.states[0]).max() < 1e-4
+        end = run(duffing, start, 400 * np.pi / 1.6, 1e-9, omega=1.6)
+        assert np.abs(end - flow.attractor(start).states[0]).max() < 1e-4
         assert found.states[found.index[i, j]] == pytest.approx(end, abs=1e-4)
     assert str(found).count("cycle through x0 = ") == 2  # both are called so
     assert set(found.index.ravel().tolist()) == {0, 1}
@@ -159,43 +145,27 @@ def test_mirror_images_of_a_forced_flow_are_one_motion_half_a_period_later():
 
 def test_what_a_stiff_flow_settles_on():
     """A third state follows the first one of a van der Pol oscillator within a millionth of its time scale."""
-    plain = cv.FlowProblem(lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.5})
-    stiff = cv.FlowProblem(
-        lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1], -1e6 * (x[2] - x[0])],
-        [1.0, 0.0, 0.0],
-        {"a": 0.5},
-    )
+    plain = cv.FlowProblem(born, [1.0, 0.0], {"a": 0.5})
+    stiff = cv.FlowProblem(lambda x, p: [*born(x, p), -1e6 * (x[2] - x[0])], [1.0, 0.0, 0.0], {"a": 0.5})
     assert stiff.attractor().period == pytest.approx(plain.attractor().period, rel=1e-6)
-    motions, _, _ = stiff.population().settle(np.array([[1.0, 0.5, 0.0]]), 0.5)
-    assert [one.word for one in motions] == ["cycle"]
+    assert kinds(stiff, [[1.0, 0.5, 0.0]], 0.5) == ["periodic"]
 
 
 def test_in_the_plane_nothing_is_quasi_periodic():
     """At a Hopf point motions come to rest like 1 / sqrt(t)."""
-    flow = cv.FlowProblem(lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.0})
-    motions, _, _ = flow.population().settle(np.array([[1.0, 0.5]]), 0.0)
-    assert [one.kind for one in motions] == ["slow"]
+    assert kinds(cv.FlowProblem(born, [1.0, 0.0], {"a": 0.0}), [[1.0, 0.5]], 0.0) == ["slow"]
 
 
 def test_a_motion_that_goes_round_its_cycle_is_not_taken_for_a_longer_one():
     """Ueda's oscillator with little damping: motions from everywhere come to one cycle of one period, round which they go; after 3, 5 or 13 periods they are
     nearer to where they were than after one."""
-    flow = cv.FlowProblem(
-        lambda x, p, t: [x[1], -0.02 * x[1] - x[0] ** 3 + p.B * np.cos(t)],
-        [0.0, 0.0],
-        {"B": 2.0},
-        period=lambda p: 2.0 * np.pi,
-    )
+
+    def ueda(x, p, t):
+        return [x[1], -0.02 * x[1] - x[0] ** 3 + p.B * np.cos(t)]
+
+    flow = cv.FlowProblem(ueda, [0.0, 0.0], {"B": 2.0}, period=2.0 * np.pi)
     orbit = flow.attractor([2.0, 2.0])
-    assert orbit.period == pytest.approx(2.0 * np.pi)
-    exact = solve_ivp(
-        lambda t, x: [x[1], -0.02 * x[1] - x[0] ** 3 + 2.0 * np.cos(t)],
-        (0.0, 2.0 * np.pi),
-        orbit.states[0],
-        rtol=1e-11,
-        atol=1e-12,
-    )
-    assert exact.y[:, -1] == pytest.approx(orbit.states[0], abs=1e-6)
+    assert run(ueda, orbit.states[0], 2.0 * np.pi, B=2.0) == pytest.approx(orbit.states[0], abs=1e-6)
     population = flow.population("B", box=[(-4.0, 4.0), (-6.0, 6.0)])
     motions, index, _ = population.settle(population.starts(30, 1, 2.0), 2.0)
     assert [motion.periods for motion in motions] == [1]

@@ -4,18 +4,12 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.flows.shooting import landau
 
 
 def normal():
-    return cv.FlowProblem(
-        lambda x, p: [
-            p.mu * x[0] - x[1] - x[0] * (x[0] ** 2 + x[1] ** 2),
-            x[0] + p.mu * x[1] - x[1] * (x[0] ** 2 + x[1] ** 2),
-        ],
-        [0.0, 0.0],
-        {"mu": -0.5},
-        states=("x", "y"),
-    )
+    # a function without a name of its own is not found again
+    return cv.FlowProblem(lambda x, p: landau(x, p), [0.0, 0.0], {"mu": -0.5}, states=("x", "y"))
 
 
 @pytest.fixture(scope="module")
