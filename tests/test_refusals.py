@@ -244,6 +244,9 @@ REFUSED = {
         lambda t, u, p: u, [0.0], 0.0
     ),
     "at least one": lambda: ParameterSet({}, "r"),
+    "there is no parameter 'c'; the problem has a, b": lambda: cv.AlgebraicProblem(
+        straight_product, [0.25], {"a": 0.5, "b": 0.5}, parameter="c"
+    ),
     "Mute does not say its": lambda: cv.diagram(Mute(), within=(0.0, 1.0)),
     "gravity cannot vary: a OneParameter has the one parameter 'p'": lambda: OneParameter().against(
         "gravity"

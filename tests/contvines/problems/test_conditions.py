@@ -2,37 +2,32 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import eig
 
 import contvines as cv
 
 
 def rotating(u, p):
-    """A circle of equilibria of radius sqrt(p) in (x, y), with z drawn along."""
+    """A circle of equilibria of radius sqrt(p) in (x, y), with z = p / 2: eigenvalues -2 p and -2, beside the zero of the rotation."""
     x, y, z = u
-    r = p - x * x - y * y
-    return np.array([r * x, r * y, x * y - 2.0 * z + 0.5 * r])
+    square = x * x + y * y
+    r = p - square
+    return np.array([r * (x - 3.0 * y), r * (y + 3.0 * x), square - 2.0 * z + 0.5 * r])
 
 
-def pinned(u, p):
-    return u[1] - 0.4 * u[0] ** 2 + 0.3 * u[2]
+@pytest.mark.parametrize("bent", [0.0, 0.4])
+def test_conditions_away_from_the_start(bent):
+    """y = x / 2, whose gradient lies along the circle, or a parabola beside it."""
 
+    def pinned(u, p):
+        return u[1] - 0.5 * u[0] - bent * u[0] ** 2 + bent * u[2]
 
-def test_conditions_away_from_the_start():
-    """The larger system with its multiplier along the gradient at the start; eigenvalues of the differential-algebraic equations."""
-    start = np.array([1.0, 0.5, 0.2])
-    problem = cv.AlgebraicProblem(rotating, start, 1.0, spectrum="flow", conditions=[pinned], scale=1.0)
-    assert problem.n_multipliers == 2
-    u = np.array([0.8, -0.6, 0.3, 0.05])
-    _, jacobian, _ = problem.equations(u, 1.0)
-    for j in range(4):
-        h = np.zeros(4)
-        h[j] = 1e-5
-        slope = (problem.residuals(u + h, 1.0) - problem.residuals(u - h, 1.0)) / 2e-5
-        assert jacobian[:, j] == pytest.approx(slope, abs=1e-8)
-    gradient = np.array([-0.8 * start[0], 1.0, 0.3])
-    assert abs(jacobian[:3, 3] @ gradient) == pytest.approx(np.linalg.norm(gradient))
-    values = eig(jacobian, np.diag([1.0, 1.0, 1.0, 0.0]), right=False)
-    finite = values[np.isfinite(values) & (np.abs(values) < 1e6)]
-    found = problem.conditions.eigenvalues(jacobian)
-    assert np.sort_complex(found) == pytest.approx(np.sort_complex(finite), abs=1e-8)
+    problem = cv.AlgebraicProblem(rotating, [0.8, 0.6, 0.5], 1.0, spectrum="flow", conditions=[pinned])
+    branch = cv.diagram(problem, within=(0.2, 2.0), depth=0)["B1"]
+    assert branch.range == (0.2, 2.0)
+    x, y, z = branch.points.T[:3]
+    p = branch.values
+    assert x**2 + y**2 == pytest.approx(p, abs=1e-12) and z == pytest.approx(0.5 * p, abs=1e-12)
+    assert y == pytest.approx(0.5 * x + bent * (x**2 - z), abs=1e-12)
+    if not bent:
+        expected = np.sort(np.column_stack([-2.0 * p, np.full(len(p), -2.0)]), axis=1)
+        assert np.sort(branch.multipliers.real, axis=1) == pytest.approx(expected, abs=1e-8)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mpmath as mp
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -15,8 +14,46 @@ from tools.brusselator import brusselator
 pytestmark = pytest.mark.slow
 
 
-def second_difference(m):
-    return sp.diags_array([np.ones(m - 1), -2.0 * np.ones(m), np.ones(m - 1)], offsets=[-1, 0, 1]).tocsc()
+def second_difference(m, walls=1.0):
+    """With zeros beyond its ends; with no flux there, on nodes that lie on them, if `walls` is 2."""
+    beside = np.ones(m - 1)
+    matrix = sp.diags_array([beside, -2.0 * np.ones(m), beside], offsets=[-1, 0, 1]).tolil()
+    matrix[0, 1] = matrix[m - 1, m - 2] = walls
+    return matrix.tocsc()
+
+
+def fold_of(F, jacobian, slope, second, mixed, u, p):
+    """The fold near (u, p) by Newton's method for F = 0, F_u v = 0, v.v = 1; nothing of the package's.
+
+    ``slope`` (u) is F_p, ``second`` (u, v, p) is the diagonal of (F_u v)_u, ``mixed`` (u, v) is (F_u v)_p.
+    """
+    n, v = len(u), np.ones(len(u))
+    for _ in range(3):
+        v = splu(jacobian(u, p)).solve(v / np.linalg.norm(v))
+    v /= np.linalg.norm(v)
+    for _ in range(8):
+        matrix = jacobian(u, p)
+        whole = sp.bmat(
+            [
+                [matrix, None, slope(u)[:, None]],
+                [sp.diags_array(second(u, v, p)), matrix, mixed(u, v)[:, None]],
+                [None, v[None, :], None],
+            ],
+            format="csc",
+        )
+        step = splu(whole).solve(-np.concatenate([F(u, p), matrix @ v, [0.5 * (v @ v - 1.0)]]))
+        u, v, p = u + step[:n], v + step[n : 2 * n], p + step[-1]
+    return float(p)
+
+
+def matrix_free(jacobian, n):
+    """The same as an operator."""
+
+    def operator(u, p):
+        matrix = jacobian(u, p)
+        return LinearOperator((n, n), matvec=lambda x: matrix @ np.ravel(x), dtype=float)
+
+    return operator
 
 
 def test_turing_points_of_a_brusselator_on_a_line():
@@ -37,38 +74,84 @@ def test_turing_points_of_a_brusselator_on_a_line():
 
 
 def test_the_fold_of_bratu_on_a_line():
-    """500 unknowns; the witness shoots from the middle in 30 digits and finds where p(u(1/2)) is stationary."""
+    """500 unknowns."""
     n = 499
     laplace = second_difference(n) * (n + 1) ** 2
+
+    def F(u, p):
+        return laplace @ u + p * np.exp(u)
+
+    def jacobian(u, p):
+        return (laplace + sp.diags_array(p * np.exp(u))).tocsc()
+
     problem = cv.AlgebraicProblem(
-        lambda u, p: laplace @ u + p * np.exp(u),
+        F,
         np.zeros(n),
         0.0,
-        jacobian=lambda u, p: (laplace + sp.diags_array(p * np.exp(u))).tocsc(),
+        jacobian=jacobian,
         derivative=lambda u, p: np.exp(u),
         outputs={"middle": lambda u, p: u[n // 2]},
     )
     graph = cv.diagram(problem, within=(0.0, 4.0), bounds={"middle": (None, 2.0)})
     (point,) = graph.of_kind("fold")
-    with mp.workdps(30):
-        h2, half = mp.mpf(1) / (n + 1) ** 2, (n + 1) // 2
+    exact = fold_of(
+        F,
+        jacobian,
+        np.exp,
+        lambda u, v, p: p * np.exp(u) * v,
+        lambda u, v: np.exp(u) * v,
+        point.u * (1.0 + 1e-5),
+        point.value * (1.0 - 1e-5),
+    )
+    assert point.value == pytest.approx(exact, rel=1e-11)
 
-        def at_the_wall(middle, p):
-            here, following = middle, middle - h2 * p * mp.exp(middle) / 2
-            for _ in range(half - 1):
-                here, following = following, 2 * following - here - h2 * p * mp.exp(following)
-            return following
 
-        def value(middle, guess):
-            return mp.findroot(
-                lambda p: at_the_wall(middle, p), (guess, guess * (1 + mp.mpf(10) ** -6)), tol=1e-50
-            )
+def test_localised_states_snake():
+    """u' = r u - (1 + d^2/dx^2)^2 u + 1.6 u^2 - u^3 on half a line (Swift and Hohenberg), even about its middle: fold after fold, each to roundoff.
 
-        middle, p, step = mp.mpf(float(point.u[n // 2])), mp.mpf(point.value), mp.mpf("1e-4")
-        low, here, high = (value(middle + s, p) for s in (-step, 0, step))
-        middle += step * (low - high) / (low - 2 * here + high) / 2
-        exact = value(middle, p)
-    assert point.value == pytest.approx(float(exact), rel=1e-11)
+    The folds on either side come to lie at two values, the ends of the pinning region (Burke and Knobloch, Phys. Rev. E 73 (2006) 056211).
+    """
+    n, length = 120, 30.0
+    x = np.linspace(0.0, length, n)
+    inner = sp.identity(n) + second_difference(n, 2.0) / x[1] ** 2
+    operator = -(inner @ inner).tocsc()
+
+    def F(u, r):
+        return r * u + operator @ u + 1.6 * u**2 - u**3
+
+    def jacobian(u, r):
+        return (operator + sp.diags_array(r + 3.2 * u - 3.0 * u**2)).tocsc()
+
+    weights = np.full(n, x[1])
+    weights[[0, -1]] *= 0.5
+    start = 1.2 * np.cos(x) / np.cosh(x / 6.0)
+    problem = cv.AlgebraicProblem(
+        F,
+        start,
+        -0.2,
+        jacobian=jacobian,
+        derivative=lambda u, r: u,
+        outputs={"mass": lambda u, r: float(weights @ u**2)},
+    )
+    graph = cv.diagram(problem, within=(-0.5, -0.05), bounds={"mass": (None, 11.0)}, depth=0)
+    folds = graph.of_kind("fold")
+    assert len(folds) >= 6
+    for point in folds:
+        exact = fold_of(
+            F,
+            jacobian,
+            lambda u: u,
+            lambda u, v, p: (3.2 - 6.0 * u) * v,
+            lambda u, v: v,
+            point.u * (1.0 + 1e-5),
+            point.value * (1.0 - 1e-5),
+        )
+        assert point.value == pytest.approx(exact, rel=5e-12)
+        assert abs(point.value - exact) <= max(point.location_error, 1e-12)
+    inside = np.array([point.value for point in folds[1:-1]])
+    assert np.ptp(inside) > 0.02
+    for end in (inside[inside < inside.mean()], inside[inside > inside.mean()]):
+        assert np.ptp(end) < 0.01
 
 
 @pytest.mark.parametrize("complex_step", [True, False])
@@ -99,18 +182,16 @@ def test_without_a_matrix_from_the_start_through_the_fold():
     n = 5
     F, jacobian, derivative = bratu_2d(n)
     N = n * n
-    laplace = jacobian(np.zeros(N), 0.0)
-    nearly = splu(laplace)
-
-    def operator(u, p):
-        slope = p * np.exp(u)
-        return LinearOperator((N, N), matvec=lambda x: laplace @ x + slope * np.ravel(x), dtype=float)
+    nearly = splu(jacobian(np.zeros(N), 0.0))
 
     def preconditioner(u, p):
         return LinearOperator((N, N), matvec=nearly.solve, dtype=float)
 
     graphs = []
-    for given in ({"jacobian": jacobian}, {"jacobian": operator, "preconditioner": preconditioner}):
+    for given in (
+        {"jacobian": jacobian},
+        {"jacobian": matrix_free(jacobian, N), "preconditioner": preconditioner},
+    ):
         problem = cv.AlgebraicProblem(
             F, np.zeros(N), 0.0, derivative=derivative, spectrum="flow", leading=3, **given
         )
@@ -122,14 +203,6 @@ def test_without_a_matrix_from_the_start_through_the_fold():
     assert np.array_equal(branches[0].stable, branches[1].stable)
     assert branches[0].stable.any() and not branches[0].stable.all()
     assert not graphs[1].of_kind("branch-point")
-
-
-def matrix_free(matrix_at, n):
-    def operator(u, p):
-        matrix = matrix_at(u, p)
-        return LinearOperator((n, n), matvec=lambda x: matrix @ np.ravel(x), dtype=float)
-
-    return operator
 
 
 @pytest.mark.parametrize("spectrum", ["none", "flow"])

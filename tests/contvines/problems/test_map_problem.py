@@ -79,16 +79,6 @@ def test_period_three_window():
     assert graph["LP1"].multipliers == pytest.approx([1.0], abs=1e-7)
 
 
-def test_neimark_sacker_of_the_delayed_logistic_map():
-    """x -> r x (1 - y), y -> x loses stability at r = 2 with multipliers exp(+-i pi/3) (Kuznetsov, example 4.2)."""
-    problem = cv.MapProblem(
-        lambda x, r: np.array([r * x[0] * (1 - x[1]), x[0]]), [1 / 3, 1 / 3], 1.5, parameter="r"
-    )
-    graph = cv.diagram(problem, within=(1.2, 2.4))
-    assert values(graph, "neimark-sacker") == pytest.approx([2.0], abs=1e-12)
-    assert np.sort(np.angle(graph["NS1"].multipliers)) == pytest.approx([-np.pi / 3, np.pi / 3], abs=1e-9)
-
-
 def test_doubled_cycle_that_falls_back_is_recognised():
     """Followed from a 2-cycle the branch ends at its birth, and the fixed points are found there."""
     start = [0.5130445, 0.7994555]

@@ -21,12 +21,6 @@ def leading(graph):
     return [s for s in graph.switches if s.point == point.label]
 
 
-def test_margins_are_positive_inside_a_piece():
-    one = problem(0.5, 0.3)
-    assert one.margins(np.array([-0.4]), 0.0) == pytest.approx([0.4])
-    assert problem(0.5, 0.3, start=0.5).margins(np.array([0.4]), 0.0) == pytest.approx([0.4])
-
-
 def test_a_fixed_point_that_goes_on_in_the_next_piece():
     """0 < a, b < 1: x = p / (1 - a) left, p / (1 - b) right."""
     graph = cv.diagram(problem(0.5, 0.3), within=(-1.0, 1.0), depth=1)

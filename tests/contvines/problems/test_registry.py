@@ -1,6 +1,5 @@
 """Files are data: whatever a .vines file names, reading it imports and calls nothing."""
 
-import contextlib
 import subprocess
 import sys
 
@@ -8,7 +7,6 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.command.cli import main
 from contvines.problems.registry import UnknownFactory, factory, rebuild
 
 EVIL = "open('marker', 'w').close()\ndef F(u, p):\n    return u - p\n"
@@ -65,32 +63,28 @@ def graph_with(description):
     return graph
 
 
-COMMANDS = {
-    "show": ["show", "x.vines"],
-    "show as json": ["show", "x.vines", "--json"],
-    "orbit": ["orbit", "x.vines", "BP1"],
-    "orbit on a branch": ["orbit", "x.vines", "B1:1"],
-    "switch": ["switch", "x.vines", "BP1"],
-    "export csv": ["export", "x.vines", "--to", "csv"],
-    "export mat": ["export", "x.vines", "--to", "mat"],
-    "export json": ["export", "x.vines", "--to", "json"],
-    "export graphml": ["export", "x.vines", "--to", "graphml"],
-    "plot": ["plot", "x.vines"],
-    "plot multipliers": ["plot", "x.vines", "--kind", "multipliers"],
-    "plot network": ["plot", "x.vines", "--kind", "network"],
-}
+COMMANDS = [
+    "show",
+    "show --json",
+    "orbit BP1",
+    "orbit B1:1",
+    "switch BP1",
+    "plot",
+    "plot --kind multipliers",
+    "plot --kind network",
+]
+COMMANDS += [f"export --to {to}" for to in ("csv", "mat", "json", "graphml")]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("attack", ATTACKS)
-def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
+def test_no_reader_runs_what_a_file_names(folder, attack, run):
     graph_with(ATTACKS[attack]).save("x.vines")
-    for words in COMMANDS.values():
-        with contextlib.suppress(SystemExit):
-            main(words)
-        said = capsys.readouterr().err
+    for command in COMMANDS:
+        verb, *words = command.split()
+        said = run(verb, "x.vines", *words)[2]
         assert "Traceback" not in said and "something went wrong" not in said and len(said) < 2000
-        if words[0] in ("orbit", "switch"):
+        if verb in ("orbit", "switch"):
             assert "has no problem attached" in said or "cannot be understood" in said
     for read in (cv.load, cv.Graph.load):
         graph = read("x.vines")
@@ -102,28 +96,27 @@ def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
     assert not (folder / "marker").exists() and "evil" not in sys.modules
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "words", [["orbit", "x.vines", "B1:1", "--json"], ["export", "x.vines", "--to", "csv"]]
-)
-def test_with_trust_the_functions_are_imported(folder, words):
-    """A process that has not seen the function: refused or left out, unless the user says that the file may be trusted."""
-    graph = graph_with(
-        described("contvines.problems.algebraic:from_description", callables=CALLABLES, **NAMES)
-    )
+@pytest.fixture
+def named(folder):
+    """A file whose graph is that of the function of another module."""
+    graph = graph_with(ATTACKS["functions of an equation"])
     graph.save("x.vines")
-    run = [sys.executable, "-m", "contvines.command", *words]
-    first = subprocess.run(run, capture_output=True, text=True)
-    assert "--trust" in first.stderr and not (folder / "marker").exists()
-    second = subprocess.run([*run, "--trust"], capture_output=True, text=True)
+    return folder
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", ["orbit x.vines B1:1 --json", "export x.vines --to csv"])
+def test_with_trust_the_functions_are_imported(named, words):
+    """A process that has not seen the function: refused or left out, unless the user says that the file may be trusted."""
+    command = [sys.executable, "-m", "contvines.command", *words.split()]
+    first = subprocess.run(command, capture_output=True, text=True)
+    assert "--trust" in first.stderr and not (named / "marker").exists()
+    second = subprocess.run([*command, "--trust"], capture_output=True, text=True)
     assert second.returncode == 0 and "--trust" not in second.stderr, second.stderr
-    assert (folder / "marker").exists()
+    assert (named / "marker").exists()
 
 
-def test_in_python_trust_and_known_functions(folder):
-    graph_with(described("contvines.algebraic:from_description", callables=CALLABLES, **NAMES)).save(
-        "x.vines"
-    )
+def test_in_python_trust_and_known_functions(named):
     assert cv.load("x.vines").branches["B1"].problem is None
     trusted = cv.load("x.vines", trust=True).branches["B1"].problem
     assert trusted.equations(np.array([0.25]), 0.5)[0].tolist() == [-0.25]

@@ -5,16 +5,10 @@ import pytest
 
 import contvines as cv
 from tools.demos import equilibria as eq
-from tools.demos import maps
+from tools.demos import listed, maps
 from tools.demos.demo import NUMBERS
 
-CASES = {
-    "bazykin": (eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2)),
-    "pp2": (eq.pp2, [0.0, 0.0], 0.0, (0.1, 1.0)),
-    "ab": (eq.ab, [0.0, 0.0], 0.0, (0.0, 0.15)),
-    "oxidation": (eq.oxidation, [0.0014673, 0.826167, 0.123119], 1.92373, (0.5, 1.95)),
-    "cusp": (eq.cusp, [1.0], 0.0, (-1.0, 1.0)),
-}
+CASES = [demo for demo in listed.DEMOS if demo.name in ("bazykin", "pp2", "ab", "oxidation of CO", "cusp")]
 UNITS = [
     (1e9, 1e-9, 1e9),
     ([1e9, 1e-9, 1e4], 1.0, 1.0),
@@ -22,28 +16,27 @@ UNITS = [
 ]
 
 
-def points(f, u, p, within, units, unit, rows):
+def points(demo, units, unit, rows):
     """Kind, value and unknowns of the special points, in the units of the source."""
-    n = len(u)
-    units, rows = (np.resize(np.asarray(part, dtype=float), n) for part in (units, rows))
+    units, rows = (np.resize(np.asarray(part, dtype=float), len(demo.u)) for part in (units, rows))
     problem = cv.AlgebraicProblem(
-        lambda v, q: rows * np.array(f(v / units, q / unit, NUMBERS)), units * u, unit * max(p, within[0])
+        lambda v, q: rows * demo.function(v / units, q / unit), units * demo.u, unit * demo.p
     )
-    graph = cv.diagram(problem, within=(within[0] * unit, within[1] * unit), depth=2)
+    graph = cv.diagram(problem, within=tuple(unit * end for end in demo.within), depth=2)
     return sorted((s.kind, s.value / unit, *(s.u / units)) for s in graph.special.values())
 
 
 @pytest.fixture(scope="module")
 def plain():
-    return {name: points(*case, 1.0, 1.0, 1.0) for name, case in CASES.items()}
+    return {demo.name: points(demo, 1.0, 1.0, 1.0) for demo in CASES}
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("demo", CASES, ids=lambda demo: demo.name)
 @pytest.mark.parametrize("units", UNITS, ids=str)
-def test_special_points_do_not_depend_on_units(plain, name, units):
-    found, expected = points(*CASES[name], *units), plain[name]
+def test_special_points_do_not_depend_on_units(plain, demo, units):
+    found, expected = points(demo, *units), plain[demo.name]
     assert [row[0] for row in found] == [row[0] for row in expected]
-    width = CASES[name][3][1]
+    width = demo.within[1]
     for one, other in zip(found, expected):
         assert one[1] == pytest.approx(other[1], rel=1e-10, abs=1e-12 * width)
 
@@ -84,10 +77,8 @@ def test_where_nothing_can_tell_a_sentence_says_so():
 def test_a_two_cycle_begins_without_a_fold():
     """Hassell's map in units of 1e9: beside its flip p is known to 1e-9 only, and turns back there by rounding."""
 
-    def f(x, rate):
-        return rate * x / (1.0 + x / 1e9) ** 6
-
-    graph = cv.diagram(cv.MapProblem(f, [0.0], 0.5), within=(0.1, 40.0), depth=2)
+    problem = cv.MapProblem(lambda x, rate: rate * x / (1.0 + x / 1e9) ** 6, [0.0], 0.5)
+    graph = cv.diagram(problem, within=(0.1, 40.0), depth=2)
     assert not graph.of_kind("fold")
     assert graph.of_kind("period-doubling")[0].value == pytest.approx((1.0 - 2.0 / 6.0) ** -6, rel=1e-12)
 
