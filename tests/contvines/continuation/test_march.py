@@ -4,71 +4,20 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.continuation.engine import Engine
 from contvines.continuation.layout import Status
-from contvines.continuation.settings import Settings
-from contvines.continuation.starts import solve_start
-from contvines.continuation.trace import chunks
 from contvines.core.library import native
-from contvines.problems.protocol import Kernels, ProblemDefaults
-from tests.contvines.compiled import Made, in_memory
+from tests.contvines.continuation.curves import INTERPRETED, KERNELS, circle, each
 
-
-def linearise(c, u, p, work):
-    work[0] = u[0] * u[0] + c[0] * p * p - 1.0
-    work[1] = 2.0 * u[0]
-    work[2] = 2.0 * c[0] * p
-    return abs(work[0])
-
-
-def bordered(c, work, border, n, step, tangent):
-    F, J, Q = work
-    det = J * border[1] - Q * border[0]
-    step[0] = (-F * border[1] - Q * n) / det
-    step[1] = (J * n + F * border[0]) / det
-    tangent[0] = -Q / det
-    tangent[1] = J / det
-    return 1.0 if det > 0.0 else -1.0
-
-
-def inspect(c, u, p, work, row):
-    row[0] = 1.0 + u[0]
-    row[1] = 0.0
-
-
-class Ellipse(ProblemDefaults):
-    """u^2 + c p^2 = 1, with a multiplier 1 + u that passes 1 at the folds."""
-
-    dimension, n_multipliers, spectrum, parameter = 1, 1, "map", "p"
-    u0, p0 = np.array([1.0]), 0.0
-
-    def __init__(self, kernels, c=1.0):
-        self.kernels = kernels
-        self.data = in_memory(c) if kernels.compiled else [c]
-
-    def workspace(self):
-        return in_memory(0.0, 0.0, 0.0) if self.kernels.compiled else np.zeros(3)
-
-
-INTERPRETED = Kernels(linearise, bordered, inspect)
-KERNELS = {"interpreted": INTERPRETED}
-if native():
-    KERNELS["compiled"] = Made(linearise, bordered, inspect, (1, 1, 3, 2))
-each = pytest.mark.parametrize("kernels", KERNELS.values(), ids=KERNELS)
-
-
-def run(kernels, within=(-2.0, 2.0), **settings):
-    engine = Engine(Ellipse(kernels), within, Settings(**settings))
-    return list(chunks(engine, solve_start(engine, [1.0], 0.0)))
+WITHIN = (-2.0, 2.0)
 
 
 @pytest.mark.skipif(not native(), reason="no native core")
 def test_compiled_and_interpreted_are_one_algorithm():
-    compiled, interpreted = run(KERNELS["compiled"]), run(INTERPRETED)
-    assert compiled[-1].status == interpreted[-1].status
+    runs = [circle(kernels).chunks(WITHIN) for kernels in KERNELS.values()]
+    assert runs[0][-1].status == runs[1][-1].status
     # chunks are shorter where points are dear; each begins with the last point of the one before
     for name, accuracy in (("points", 1e-12), ("tangents", 1e-11), ("signs", 0.0)):
-        a, b = (np.concatenate([getattr(c, name)[1:] for c in parts]) for parts in (compiled, interpreted))
+        a, b = (np.concatenate([getattr(c, name)[1:] for c in parts]) for parts in runs)
         np.testing.assert_allclose(a, b, rtol=0.0, atol=accuracy)
 
 
@@ -76,45 +25,61 @@ def test_compiled_and_interpreted_are_one_algorithm():
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("angle", [0.03, 0.1, 0.3])
 def test_points_are_exact_at_every_tolerance_and_the_circle_closes(kernels, tolerance, angle):
-    parts = run(kernels, tolerance=tolerance, angle=angle, max_step=0.2)
-    residual = [np.abs(c.points[:, 0] ** 2 + c.values**2 - 1.0).max() for c in parts]
-    assert max(residual) < 1e-12
+    parts = circle(kernels).chunks(WITHIN, tolerance=tolerance, angle=angle, max_step=0.2)
+    for part in parts:
+        assert np.abs(part.points[:, 0] ** 2 + part.values**2 - 1.0).max() < 1e-12
     assert parts[-1].status == Status.CLOSED
     assert parts[-1].points[-1, 0] == 1.0 and parts[-1].values[-1] == 0.0
 
 
 @each
 def test_neighbouring_tangents_stay_within_twice_the_angle(kernels):
-    engine = Engine(Ellipse(kernels), (-2.0, 2.0), Settings(angle=0.05, max_step=0.5))
-    part = next(chunks(engine, solve_start(engine, [1.0], 0.0)))
-    cosines = ((part.tangents[1:] * part.tangents[:-1]) @ engine.weights).clip(-1.0, 1.0)
+    curve = circle(kernels)
+    tangents = curve.chunks(WITHIN, angle=0.05, max_step=0.5)[0].tangents
+    cosines = ((tangents[1:] * tangents[:-1]) @ curve.engine(WITHIN).weights).clip(-1.0, 1.0)
     assert np.arccos(cosines).max() <= 0.1 + 1e-9
 
 
 @each
 def test_a_branch_ends_on_the_interval_exactly(kernels):
-    points = list(cv.trace(Ellipse(kernels), within=(-0.25, 0.3)))
+    points = list(cv.trace(circle(kernels), within=(-0.25, 0.3)))
     assert points[-1].value == 0.3
     assert abs(points[-1].u[0] - np.sqrt(1 - 0.3**2)) < 1e-15
     assert "end of the interval" in points[-1].status
     assert all(not point.status for point in points[:-1])
 
 
-def test_what_cannot_be_evaluated_ends_a_branch_with_a_sentence():
-    def root(u, p):
-        return np.array([u[0] - np.sqrt(p - 0.5)]) if np.real(p) >= 0.5 else np.array([np.nan])
-
-    points = list(cv.trace(cv.AlgebraicProblem(root, [1.0], 1.5), within=(0.0, 2.0), direction=-1.0))
-    assert "beyond" in points[-1].status or "smallest step" in points[-1].status
-    assert abs(points[-1].value - 0.5) < 1e-2
+HYPERBOLA = cv.AlgebraicProblem(lambda u, p: u * p - 1.0, [1.0], 1.0)
 
 
-def test_run_away_branch_ends():
-    problem = cv.AlgebraicProblem(lambda u, p: u * p - 1.0, [1.0], 1.0)
-    points = list(cv.trace(problem, within=(-1.0, 2.0), direction=-1.0))
-    assert "run away" in points[-1].status
+@pytest.mark.parametrize(
+    ("problem", "settings", "reason"),
+    [
+        (HYPERBOLA, {}, "run away"),
+        (circle(INTERPRETED), {"max_points": 30, "first_chunk": 10}, "largest number of points"),
+    ],
+)
+def test_other_ends(problem, settings, reason):
+    points = list(cv.trace(problem, within=WITHIN, direction=-1.0, settings=settings))
+    assert reason in points[-1].status
 
 
-def test_largest_number_of_points():
-    points = list(cv.trace(Ellipse(INTERPRETED), (-2.0, 2.0), settings={"max_points": 30, "first_chunk": 10}))
-    assert "largest number of points" in points[-1].status
+class Helix(cv.AlgebraicProblem):
+    """An angle, and its sine as the second unknown; the parameter is its cosine. A turn later it is the same solution."""
+
+    period_shift = np.array([2.0 * np.pi, 0.0])
+
+
+def test_a_turn_later_the_branch_has_come_back():
+    helix = Helix(
+        lambda u, p: np.array([p - np.cos(u[0]), u[1] - np.sin(u[0])]),
+        [1.0, np.sin(1.0)],
+        np.cos(1.0),
+        scale=1.0,
+    )
+    points = list(cv.trace(helix, within=WITHIN, settings={"max_step": 0.2}))
+    angles = np.array([point.u[0] for point in points])
+    way = np.sign(angles[1] - 1.0)
+    assert points[-1].u == pytest.approx([1.0 + way * 2.0 * np.pi, np.sin(1.0)], abs=1e-12)
+    assert points[-1].value == points[0].value
+    assert np.all(way * np.diff(angles) >= 0.0)

