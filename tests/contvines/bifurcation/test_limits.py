@@ -4,34 +4,21 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.problems.protocol import Seed
-from tests.contvines.graph.test_borders import Line
+from tests.contvines.lines import Word, ending, seed
 
 
-def begun_beside(multiplier, distance, step, end=1.0, rounded=1e-11, blur=0.0):
-    """The multiplier with which word "b" begins at p = 1/2: it is traced from a point at some distance from there.
-
-    Nearer than `rounded` to the border what is computed is something else. At all points beside it the margin is too large by `blur`.
-    """
-
-    class Singular(Line):
-        def multiplier(self, p):
-            return multiplier(p - 0.5) if abs(p - 0.5) >= rounded else 7.0
-
-        def margins(self, u, p):
-            return super().margins(u, p) + blur * (p - 0.5 > 1e-15)
+def begun_beside(multiplier, distance, step, end=1.0):
+    """The multiplier with which word "b" begins at p = 1/2: it is traced from a point at some distance; what is computed at the border itself is something else."""
 
     def beyond(line, point):
-        other = Singular("b", -0.5, 2.0, [1.0, -1.0], [0.5, end])
-        p = 0.5 + distance
-        return Seed(other, np.array([2.0 * p - 0.5]), p, None, "border", "persistence", True)
+        other = Word(
+            "b", -0.5, 2.0, [1.0, -1.0], [0.5, end],
+            multipliers=lambda u, p: [multiplier(p - 0.5) if abs(p - 0.5) >= 1e-11 else 7.0],
+        )  # fmt: skip
+        return seed(other, 0.5 + 2.0 * distance, 0.5 + distance)
 
-    graph = cv.diagram(
-        Line("a", 0.0, 1.0, [-1.0], [0.5], [beyond]),
-        within=(0.0, 1.0),
-        settings={"first_step": step, "max_step": max(step, 0.03)},
-    )
-    branch = graph["B2"]
+    steps = {"first_step": step, "max_step": max(step, 0.03)}
+    branch = cv.diagram(ending(beyond), within=(0.0, 1.0), settings=steps)["B2"]
     assert branch.values[0] == pytest.approx(0.5, abs=1e-12)
     return branch.multipliers[0, 0]
 

@@ -1,24 +1,28 @@
-"""Kinds of special points of the user's own: located, labelled, tabulated, drawn, exported, kept in files, named in studies."""
+"""Kinds of special points of the user's own: located, labelled, tabulated, drawn, kept in files, named in studies, followed in two parameters."""
 
-import importlib.util
-import json
+import runpy
 from pathlib import Path
+from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import contvines as cv
+from tests.contvines.loci.systems import BAZYKIN_DOUBLE_ZERO, bazykin
+from tests.machines import ABSORBER
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "neutral_saddle.py"
 
 
-def loaded():
-    spec = importlib.util.spec_from_file_location("neutral_saddle", EXAMPLE)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+@pytest.fixture(scope="module")
+def example():
+    return runpy.run_path(str(EXAMPLE))["main"]
+
+
+def with_kind(problem, kind, within=(0.0, 1.0), over=None):
+    return cv.diagram(problem, over=over, within=within, depth=0, kinds=[*cv.KINDS, kind])
 
 
 def saddle(delta, guess):
@@ -34,10 +38,9 @@ def saddle(delta, guess):
 
 
 @pytest.mark.parametrize("delta", [0.15, 0.17, 0.1])
-def test_neutral_saddles_of_bazykins_model(delta):
+def test_neutral_saddles_of_bazykins_model(example, delta):
     """Between the two folds (at 0.17 as close as 1.3e-4 to one), and on the axis y = 0 at x = 100, where the other eigenvalue is -1."""
-    module = loaded()
-    graph = module.main(delta)
+    graph = example(delta)
     inner, axis = sorted(graph.of_kind("neutral-saddle"), key=lambda point: -point.u[1])
     x, y, alpha = saddle(delta, [*inner.u, inner.value])
     assert [inner.value, *inner.u] == pytest.approx([alpha, x, y], abs=1e-9)
@@ -46,48 +49,37 @@ def test_neutral_saddles_of_bazykins_model(delta):
     for point in (inner, axis):
         assert sum(point.multipliers) == pytest.approx(0.0, abs=1e-9)
         assert np.abs(point.multipliers.imag).max() == 0.0
-        assert point.label.startswith("NSD")
-    hopf = graph.of_kind("hopf")
-    assert len(hopf) == 1 and abs(hopf[0].multipliers[0].imag) > 0.1
+    (hopf,) = graph.of_kind("hopf")
+    assert abs(hopf.multipliers[0].imag) > 0.1
     assert graph.of_kind("neutral-saddle") == [graph["NSD1"], graph["NSD2"]]
 
 
-def test_the_kind_is_in_tables_pictures_exports_and_files(tmp_path):
-    graph = loaded().main()
-    assert "neutral-saddle" in str(graph) and "NSD1" in str(graph)
-    figure = graph.plot(y="u1")
-    assert "neutral saddle" in [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+def test_the_kind_is_in_tables_pictures_and_files(example, tmp_path):
+    graph = example()
     cv.save(graph, tmp_path / "saddles.vines")
-    again = cv.load(tmp_path / "saddles.vines")
-    assert again["NSD1"].value == graph["NSD1"].value
-    assert again.kind("neutral-saddle").text == "neutral saddle"
-    assert [point.label for point in again.of_kind("neutral-saddle")] == ["NSD1", "NSD2"]
-    kinds = {entry["label"]: entry["kind"] for entry in json.loads(json.dumps(graph.to_dict()))["special"]}
-    assert kinds["NSD1"] == "neutral-saddle"
+    for each in (graph, cv.load(tmp_path / "saddles.vines")):
+        assert "neutral-saddle" in str(each) and each.kind("neutral-saddle").text == "neutral saddle"
+        assert each["NSD1"].value == graph["NSD1"].value
+        legend = each.plot(y="u1").axes[0].get_legend()
+        assert "neutral saddle" in [text.get_text() for text in legend.get_texts()]
 
 
 def test_a_zero_that_comes_in_pairs_is_seen():
     """On the line u = p the kind's number is (p - 0.5)^2 - 1e-4: zero at 0.49 and 0.51, one step apart."""
-    problem = cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0)
     kind = cv.Kind("near-half", "NH", test=lambda point: (point.value - 0.5) ** 2 - 1e-4)
-    graph = cv.diagram(problem, within=(0.0, 1.0), kinds=[*cv.KINDS, kind])
+    graph = with_kind(cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0), kind)
     assert [p.value for p in graph.of_kind("near-half")] == pytest.approx([0.49, 0.51], abs=1e-11)
 
 
 def test_a_kind_may_end_branches_and_tell_its_normal_form():
-    problem = cv.AlgebraicProblem(lambda u, p: u - p**2, [0.0], 0.0)
     kind = cv.Kind(
-        "quarter",
-        "QU",
-        test=lambda point: point.u[0] - 0.25,
+        "quarter", "QU", test=lambda point: point.u[0] - 0.25, ends=True,
         classify=lambda point: ("supercritical", 2.0 * point.value),
-        ends=True,
-    )
-    graph = cv.diagram(problem, within=(0.0, 1.0), kinds=[*cv.KINDS, kind])
+    )  # fmt: skip
+    graph = with_kind(cv.AlgebraicProblem(lambda u, p: u - p**2, [0.0], 0.0), kind)
     point = graph["QU1"]
-    assert point.value == pytest.approx(0.5, abs=1e-12)
+    assert point.value == pytest.approx(0.5, abs=1e-12) and graph["B1"].range[1] == point.value
     assert (point.criticality, point.coefficient) == ("supercritical", pytest.approx(1.0))
-    assert graph["B1"].range[1] == point.value
 
 
 def test_only_the_kinds_asked_for_are_looked_for():
@@ -95,6 +87,12 @@ def test_only_the_kinds_asked_for_are_looked_for():
     without = [kind for kind in cv.KINDS if kind.name != "fold"]
     assert not cv.diagram(problem, within=(-2.0, 2.0), kinds=without).special
     assert len(cv.diagram(problem, within=(-2.0, 2.0)).of_kind("fold")) == 2
+
+
+def test_a_test_that_is_nowhere_a_number_is_told():
+    nothing = cv.Kind("nothing", "NO", test=lambda point: float("nan"))
+    with pytest.warns(UserWarning, match="kind nothing: its test is a number on no branch"):
+        with_kind(cv.AlgebraicProblem(lambda u, p: u - p, [0.5], 0.5), nothing)
 
 
 STUDY = """
@@ -118,38 +116,90 @@ def test_studies_name_kinds_in_a_file(tmp_path, monkeypatch):
     from contvines.command.compose import first_orbit, run_diagram
     from contvines.command.study import read_study
 
-    (tmp_path / "neutral_saddle.py").write_text(EXAMPLE.read_text())
+    file, path = tmp_path / "neutral_saddle.py", tmp_path / "study.toml"
+    file.write_text(EXAMPLE.read_text())
     (tmp_path / "model.py").write_text(MODEL)
-    (tmp_path / "study.toml").write_text(STUDY.format(name="NEUTRAL_SADDLE"))
+    path.write_text(STUDY.format(name="NEUTRAL_SADDLE"))
     monkeypatch.syspath_prepend(str(tmp_path))
-    study = read_study(tmp_path / "study.toml")
+    study = read_study(path)
     graph = run_diagram(study, first_orbit(study))
     inner = max(graph.of_kind("neutral-saddle"), key=lambda point: point.u[1])
     assert inner.value == pytest.approx(saddle(0.15, [*inner.u, inner.value])[2], abs=1e-10)
     before = study.fingerprint()
-    (tmp_path / "neutral_saddle.py").write_text(EXAMPLE.read_text() + "\n# changed\n")
-    assert read_study(tmp_path / "study.toml").fingerprint() != before
-    (tmp_path / "study.toml").write_text(STUDY.format(name="SADDLE"))
+    file.write_text(EXAMPLE.read_text() + "\n# changed\n")
+    assert read_study(path).fingerprint() != before
+    path.write_text(STUDY.format(name="SADDLE"))
     with pytest.raises(ValueError, match="has no kind 'SADDLE'; it has NEUTRAL_SADDLE"):
-        read_study(tmp_path / "study.toml")
+        read_study(path)
 
 
-def test_a_kind_with_a_condition_is_followed_in_two_parameters():
-    """Along the locus trace and residual stay zero; it meets the point where the determinant vanishes, too, solved anew by mpmath."""
-    module = loaded()
-    locus = cv.locus(module.main()["NSD1"], over="delta", within=(0.05, 0.3))
+# ------------------------------------------------------------------ in two parameters
+def test_neutral_saddles_are_followed(example):
+    """Along the locus trace and residual stay zero: solved anew by mpmath."""
+    locus = cv.locus(example()["NSD1"], over="delta", within=(0.05, 0.3))
     assert locus.kind == "neutral-saddle" and not locus.points
-    values, points = locus.values, locus.branch.points
-    for (alpha, delta), (x, y, _) in zip(values[::7], points[::7]):
-        found = saddle(delta, [x, y, alpha])
-        assert [x, y, alpha] == pytest.approx(found, abs=1e-8 * max(1.0, x))
+    values = locus.values
+    for (alpha, delta), (x, y, _) in zip(values[::7], locus.branch.points[::7]):
+        assert [x, y, alpha] == pytest.approx(saddle(delta, [x, y, alpha]), abs=1e-8 * max(1.0, x))
     # both ways from the start: saddles at one end of the interval of delta, Hopf points at the other
     assert sorted(values[[0, -1], 1]) == pytest.approx([0.05, 0.05])
     assert values[:, 1].max() > 0.2
 
 
-def test_a_test_that_is_nowhere_a_number_is_told():
-    problem = cv.AlgebraicProblem(lambda u, p: u - p, [0.5], 0.5)
-    nothing = cv.Kind("nothing", "NO", test=lambda point: float("nan"))
-    with pytest.warns(UserWarning, match="kind nothing: its test is a number on no branch"):
-        cv.diagram(problem, within=(0.0, 1.0), kinds=[*cv.KINDS, nothing])
+def test_a_zero_trace_on_a_locus_of_folds_is_a_bogdanov_takens_point():
+    problem = cv.AlgebraicProblem(bazykin, [20.0, 5.5], {"alpha": 0.4, "delta": 0.15}, spectrum="flow")
+    graph = cv.diagram(problem, over="alpha", within=(0.3, 0.6))
+    trace = cv.Kind("zero-trace", "ZT", test=lambda point: np.trace(point.jacobian))
+    never = cv.Kind("never", "NEV", test=trace.test, verify=lambda point: point.parameters["delta"] < 0.1)
+    found = cv.locus(graph["LP2"], over="delta", within=(0.01, 0.4), kinds=[*cv.KINDS, trace, never]).points
+    assert {"ZT1", "BT1"} == set(found)
+    for point in found.values():
+        assert point.value == pytest.approx(BAZYKIN_DOUBLE_ZERO, rel=1e-10)
+
+
+def at(measure, value):
+    """A kind that may be followed: where a measure has a value."""
+
+    def beyond(point):
+        return point.measure(measure) - value
+
+    return cv.Kind("at", "AT", test=beyond, locus=beyond)
+
+
+def test_a_limit_of_the_impact_speed_is_followed_as_the_closed_form_has_it():
+    machine = ABSORBER.changed(friction=0.3, gravity=0.2)
+    graph = with_kind(
+        machine.symmetric_orbit(amplitude=0.6), at("impact_speed", 1.0), (0.4, 0.6), "amplitude"
+    )
+    found = cv.locus(graph["AT1"], over="friction", within=(0.1, 0.5))
+    assert found.values[[0, -1], 1] == pytest.approx([0.1, 0.5])
+    for p, q in found.values:
+        orbit = machine.changed(friction=q).symmetric_orbit(amplitude=p)
+        assert orbit.measure("impact_speed") == pytest.approx(1.0, abs=1e-9)
+
+
+def test_cycles_of_a_given_period_are_followed_on_their_mesh():
+    """Beside the cycle to which an integration settles."""
+
+    def rates(x, p):
+        return [x[1], p.mu * (1 - x[0] ** 2) * x[1] - p.stiffness * x[0]]
+
+    def up(t, x):
+        return x[0]
+
+    up.direction = 1.0
+    flow = cv.FlowProblem(rates, [0.0, 0.0], {"mu": 1.0, "stiffness": 1.0})
+    graph = with_kind(flow.attractor([1.0, 0.0]), at("period", 8.0), (1.0, 4.0), "mu")
+    found = cv.locus(graph["AT1"], over="stiffness", within=(0.8, 1.3))
+    for mu, stiffness in found.values[[0, len(found) // 2, -1]]:
+        p = SimpleNamespace(mu=mu, stiffness=stiffness)
+        run = solve_ivp(
+            lambda t, x, p=p: rates(x, p),
+            (0.0, 100.0),
+            [1.0, 0.0],
+            "DOP853",
+            events=up,
+            rtol=1e-11,
+            atol=1e-12,
+        )
+        assert np.diff(run.t_events[0])[-1] == pytest.approx(8.0, abs=1e-6)

@@ -1,5 +1,6 @@
-"""The scan of chunks: numbers known by hand, and the native core against numpy on drawn rows."""
+"""The scan of chunks: the native core against numpy on drawn rows."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,13 +14,6 @@ from contvines.continuation.engine import Engine
 from contvines.continuation.layout import Chunk, Metric, Status
 from contvines.core.library import native
 
-
-def in_native(engine, symmetries, chunk):
-    """The native core's scan."""
-    return NativeScan(engine, symmetries)(chunk)
-
-
-BOTH = [with_arrays, *([in_native] if native() else [])]
 TURN = 2.0 * np.pi
 
 
@@ -47,71 +41,6 @@ def symmetry(apply, engine):
     return SymmetryTest(found, engine.n, engine.shift)
 
 
-@pytest.mark.parametrize("scan", BOTH)
-def test_numbers_known_by_hand(scan):
-    engine = Shown(2, 2, 2)
-    # what it changes is twice the second unknown
-    mirror = symmetry(lambda u: u * [1.0, -1.0] + [TURN, 0.0], engine)
-    points, values = np.array([[0.0, 0.5], [3.0, -3.5], [3.0, -3.5]]), np.array([0.0, 2.0, 4.0])
-    rows = np.array(
-        [
-            [np.e, 0.0, -(np.e**-2), 0.0, 3.0, 1.0],
-            [0.0, 1.0, 0.0, -1.0, np.nan, -2.0],
-            [np.e, 0.0, np.e**3, 0.0, 1.0, -1.0],
-        ]
-    )
-    found = scan(engine, [mirror], chunk(points, values, rows))
-    np.testing.assert_allclose(found.lengths, [np.sqrt(0.5 * 25.0 + 0.25 * 4.0), 1.0], rtol=1e-15)
-    np.testing.assert_allclose(found.smallest, [1.0, -2.0, -1.0])
-    np.testing.assert_allclose(found.spectra.near, [1.0, np.nan, 1.0], rtol=1e-14)
-    np.testing.assert_allclose(found.spectra.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
-    np.testing.assert_allclose(found.reached, [0, 0])
-    np.testing.assert_allclose(found.low, [0, 1])  # the second one changes its sign
-    np.testing.assert_allclose(found.sizes, [[1.0, 7.0, 7.0]])
-    np.testing.assert_allclose(found.turns, [[-7.0, 49.0]])
-
-
-def places(*multipliers):
-    """Rows of points with one pair, or two real multipliers, each."""
-    return np.array([[z.real, z.imag, w.real, w.imag] for z, w in multipliers])
-
-
-def pair(size, angle):
-    """Multipliers whose logarithms have such parts."""
-    z = np.exp(complex(size, angle))
-    return z, z.conjugate()
-
-
-@pytest.mark.parametrize("scan", BOTH)
-@pytest.mark.parametrize(
-    ("multipliers", "reached"),
-    [
-        # along the circle by a chord of 0.4: discs of sizes 0.1 and 0.2 do not overlap, those of 0.2 and 0.3 do
-        ([pair(-0.1, 1.0), pair(-0.2, 1.4)], [1]),
-        ([pair(-0.2, 1.0), pair(-0.3, 1.4)], [0]),
-        ([pair(0.1, 1.0), pair(0.2, 1.4)], [1]),
-        ([pair(-0.1, 1.0), pair(0.2, 1.0)], [1]),  # on both sides
-        # a pair that comes nearer by 0.3 on one segment may go by 0.6 on the next: from 0.2 to the circle and back to 0.3
-        ([pair(-0.5, 1.0), pair(-0.2, 1.0), pair(-0.3, 1.0)], [0, 1]),
-        ([pair(-0.9, 1.0), pair(-0.5, 1.0), pair(-0.6, 1.0)], [0, 0]),
-        # where two real ones become a pair 0.4 away
-        ([(0.8, 0.7), pair(np.log(0.8), 0.4), pair(np.log(0.7), 0.4)], [1, 1]),
-        ([(0.4, 0.3), pair(np.log(0.4), 0.4), pair(np.log(0.3), 0.4)], [0, 0]),
-        # the parabola through 2, 0.02, 0.7 falls to -0.06, that through 2, 0.2, 0.7 to 0.11. Another real multiplier is nearer to the circle
-        *(
-            ([tuple(side * np.exp([at, 0.01])) for at in logarithms], [below, below])
-            for side in (1.0, -1.0)
-            for logarithms, below in (([2.0, 0.02, 0.7], 1), ([-2.0, -0.02, -0.7], 1), ([2.0, 0.2, 0.7], 0))
-        ),
-    ],
-)
-def test_segments_on_which_a_multiplier_may_have_reached_the_circle(scan, multipliers, reached):
-    rows = places(*((complex(z), complex(w)) for z, w in multipliers))
-    points = np.arange(float(len(rows)))[:, None]
-    found = scan(Shown(1, 2, 0), [], chunk(points, 0.0 * points[:, 0], rows))
-    np.testing.assert_array_equal(found.reached, reached)
-
-
 NUMBERS = st.one_of(
     st.sampled_from([0.0, -0.0, 1.0, -1.0, np.inf, -np.inf, np.nan, 1e-300, -2e-12, 1e300]),
     st.floats(-8.0, 8.0, width=32),
@@ -135,11 +64,12 @@ def test_native_and_numpy_agree(data):
         data.draw(arrays(float, count, elements=st.floats(-2.0, 2.0))),
         data.draw(arrays(float, (count, 2 * m + w), elements=NUMBERS)),
     )
-    one, other = (scan(engine, symmetries, drawn) for scan in (with_arrays, in_native))
+    scans = partial(with_arrays, engine, symmetries), NativeScan(engine, symmetries)
+    one, other = (scan(drawn) for scan in scans)
     flat = [[*found[:2], *found.spectra, *found[4:7]] for found in (one, other)]
     for expected, numbers in zip(*flat):
         np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
     # ways as long as they have to be: at equal numbers the last bit would decide
     drawn.rows *= 1.0 + 1e-3 * np.sin(1.0 + np.arange(drawn.rows.size).reshape(drawn.rows.shape))
-    one, other = (scan(engine, symmetries, drawn).reached for scan in (with_arrays, in_native))
+    one, other = (scan(drawn).reached for scan in scans)
     np.testing.assert_array_equal(one, other)

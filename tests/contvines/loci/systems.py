@@ -23,3 +23,26 @@ def generalized_henon_at(trace, r=R):
     x = trace / (r - 2)
     be = 1 + r * x
     return x, be, x + be * x + x * x - r * x * x
+
+
+def bautin(x, p):
+    """r' = r (mu + b r^2 - r^4): cycles fold where b^2 + 4 mu = 0 with b > 0, r^2 = b / 2."""
+    square = x[0] ** 2 + x[1] ** 2
+    growth = p.mu + p.b * square - square**2
+    return [growth * x[0] - x[1], x[0] + growth * x[1]]
+
+
+def bazykin(x, p):
+    """Bazykin's predator and prey: Kuznetsov's example 8.3."""
+    eaten = x[0] * x[1] / (1 + p.alpha * x[0])
+    return [x[0] - eaten - 0.01 * x[0] ** 2, -x[1] + eaten - p.delta * x[1] ** 2]
+
+
+# where F, trace and determinant vanish: mpmath, thirty digits
+BAZYKIN_DOUBLE_ZERO = 0.45362432777812945521, 0.17512759295021742421
+BAZYKIN_PLACE = 6.26576552895236307, 3.60155393683666477
+
+
+def henon(x, p):
+    """x' = 1 + y - a x^2, y' = b x."""
+    return np.array([1 + x[1] - p.a * x[0] ** 2, p.b * x[0]])

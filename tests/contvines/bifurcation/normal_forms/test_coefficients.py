@@ -1,47 +1,50 @@
-"""Coefficients of normal forms that can be worked out by hand."""
+"""Cubic coefficients of diagrams that can be worked out by hand, and their sign, the criticality."""
 
+import mpmath
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.bifurcation.normal_forms.coefficients import Forms
+from tools.brusselator import brusselator
+
+UNIT = (-1.0, 1.0)
 
 
-def flow(function, size):
-    return Forms(
-        cv.AlgebraicProblem(function, np.zeros(size), 0.0, spectrum="flow", scale=1.0), np.zeros(size), 0.0
-    )
+def flow(function, u0, p0=-0.5, within=UNIT, **more):
+    return cv.diagram(cv.AlgebraicProblem(function, u0, p0, spectrum="flow", **more), within=within, depth=0)
+
+
+def word(coefficient):
+    return "supercritical" if coefficient < 0.0 else "subcritical"
+
+
+@pytest.mark.parametrize("a", [0.25, 2.0, -3.0])
+def test_fold(a):
+    """p = a u^2 turns with the coefficient a at u = 0."""
+    problem = cv.AlgebraicProblem(lambda u, p: p - a * u**2, [abs(a) ** -0.5], np.sign(a))
+    fold = cv.diagram(problem, within=UNIT)["LP1"]
+    assert (fold.value, fold.coefficient) == pytest.approx((0.0, a), rel=1e-6, abs=1e-12)
 
 
 @pytest.mark.parametrize(("slaved", "own"), [(0.0, -1.0), (0.5, 0.0), (-0.8, 0.3)])
 def test_a_pitchfork_with_a_slaved_unknown(slaved, own):
     """x' = p x + x w + c x^3, w' = -w + b x^2: on the centre manifold w = b x^2, so x' = (b + c) x^3."""
-    forms = flow(
-        lambda u, p: np.array([p * u[0] + u[0] * u[1] + own * u[0] ** 3, -u[1] + slaved * u[0] ** 2]), 2
-    )
-    assert forms.cubic(0.0).value == pytest.approx(slaved + own, rel=1e-5)
+
+    def F(u, p):
+        return [p * u[0] + u[0] * u[1] + own * u[0] ** 3, -u[1] + slaved * u[0] ** 2]
+
+    (point,) = flow(F, [0.0, 0.0], scale=1.0).of_kind("branch-point")
+    assert point.coefficient == pytest.approx(slaved + own, rel=1e-5)
+    assert point.criticality == word(slaved + own)
 
 
 OMEGA = 1.4
 
 
-def planar(f, g):
-    """x' = -omega y + f, y' = omega x + g, f and g by their monomials {(i, j): coefficient of x^i y^j}."""
-
-    def F(u, p):
-        x, y = u
-        return np.array(
-            [
-                -OMEGA * y + sum(c * x**i * y**j for (i, j), c in f.items()),
-                OMEGA * x + sum(c * x**i * y**j for (i, j), c in g.items()),
-            ]
-        )
-
-    return F
-
-
 def by_hand(f, g):
-    """16 a of Guckenheimer and Holmes, (3.4.11): third derivatives, and products of second ones over omega."""
+    """16 a of Guckenheimer and Holmes, (3.4.11), for r' = a r^3: third derivatives, and products of second ones over omega."""
 
     def d(part, i, j):
         return part.get((i, j), 0.0) * np.prod(np.arange(1, i + 1)) * np.prod(np.arange(1, j + 1))
@@ -53,11 +56,109 @@ def by_hand(f, g):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_hopf_point_of_any_plane_system(seed):
-    """Up to the length of the critical vector, which the radial cubic -x (x^2 + y^2) tells."""
-    radial = ({(3, 0): -1.0, (1, 2): -1.0}, {(2, 1): -1.0, (0, 3): -1.0})
+    """x' = p x - omega y + f, y' = omega x + p y + g, f and g by their monomials; z of r = |z| sqrt 2 goes with a critical vector of length one: l1 = 2 a / omega."""
     draw = np.random.default_rng(seed)
     powers = [(i, j) for i in range(4) for j in range(4) if 2 <= i + j <= 3]
-    drawn = tuple({power: float(draw.uniform(-1.0, 1.0)) for power in powers} for _ in range(2))
-    unit, found = (flow(planar(*parts), 2).lyapunov(1j * OMEGA)[0].value for parts in (radial, drawn))
-    assert unit < 0.0
-    assert found / unit == pytest.approx(by_hand(*drawn) / by_hand(*radial), rel=1e-5)
+    f, g = ({power: float(draw.uniform(-1.0, 1.0)) for power in powers} for _ in range(2))
+
+    def F(u, p):
+        x, y = u
+        nonlinear = (sum(c * x**i * y**j for (i, j), c in part.items()) for part in (f, g))
+        return p * u + OMEGA * np.array([-y, x]) + list(nonlinear)
+
+    (point,) = flow(F, [0.0, 0.0], p0=-0.05, within=(-0.1, 0.1), scale=1.0).of_kind("hopf")
+    exact = by_hand(f, g) / (8.0 * OMEGA)
+    assert point.coefficient == pytest.approx(exact, rel=1e-5) and point.criticality == word(exact)
+
+
+def of_one_cell(A):
+    """l1 of the brusselator at its Hopf point b = 1 + A^2, omega = A, for a critical vector of length one: by SymPy from the same formula."""
+    return -(2.0 + A**2) / (2.0 * A * (1.0 + 2.0 * A**2))
+
+
+def test_a_hopf_point_and_its_eigenvectors():
+    def cell(u, b):
+        return [2.0 - (b + 1.0) * u[0] + u[0] ** 2 * u[1], b * u[0] - u[0] ** 2 * u[1]]
+
+    graph = flow(cell, [2.0, 0.5], 1.0, (0.5, 8.0))
+    (point,) = graph.of_kind("hopf")
+    assert point.value == pytest.approx(5.0, rel=1e-13) and point.frequency == pytest.approx(2.0, rel=1e-12)
+    assert point.coefficient == pytest.approx(of_one_cell(2.0), rel=1e-6)
+    proper(point, np.array([[4.0, 4.0], [-5.0, -4.0]]))
+    assert graph.of_kind("end")[0].frequency is None
+
+
+def proper(point, matrix, close=1e-9):
+    """Its eigenvectors are those of the matrix."""
+    vectors = point.eigenvectors
+    np.testing.assert_allclose(matrix @ vectors, vectors * point.multipliers, atol=close)
+
+
+@pytest.mark.slow
+def test_all_cells_of_a_line_at_once():
+    """Without a gradient each of m cells oscillates as one alone, and a critical vector of length one has 1 / m of its square in each."""
+    m, A, b = 400, 1.5, 2.9
+    F, jacobian, derivative = brusselator(m, A, 0.4, 0.3)
+    own = {"jacobian": jacobian, "derivative": derivative, "leading": 6}
+    point = flow(F, np.tile([A, b / A], m), b, (2.9, 3.6), **own).of_kind("hopf")[0]
+    assert abs(point.value - (1.0 + A**2)) < 1e-9
+    assert point.criticality == "supercritical"
+    assert point.coefficient == pytest.approx(of_one_cell(A) / m, rel=1e-6)
+    proper(point, jacobian(point.u, point.value), 1e-7)
+
+
+@settings(max_examples=15)
+@given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+def test_flip_of_a_general_map(q, c):
+    """x -> -(1 + p) x + q x^2 + c x^3 has Kuznetsov's coefficient q^2 + c (theorem 4.3: f_xx^2/4 + f_xxx/6)."""
+    exact = q * q + c
+    assume(abs(exact) > 0.05)
+    problem = cv.MapProblem(lambda x, p: -(1.0 + p) * x + q * x**2 + c * x**3, [0.0], -0.2)
+    point = cv.diagram(problem, within=(-0.3, 0.1), depth=0)["PD1"]
+    assert point.value == pytest.approx(0.0, abs=1e-13)
+    assert point.coefficient == pytest.approx(exact, rel=1e-4, abs=1e-4)
+    assert point.criticality == word(-exact)
+
+
+def test_flip_beside_other_doublings():
+    """The third doubling of x -> x + K (q - x^2), 1e-9 of q from the second: g^2/4 + h/6 of the fourth iterate with derivatives -1, g, h."""
+    K = 1e4
+    problem = cv.MapProblem(lambda x, p: [x[0] + K * (p.q - x[0] ** 2)], [0.3], {"q": 0.09})
+    point = cv.diagram(problem, over="q", within=(-1.0, 0.1), depth=2)["PD3"]
+
+    def fourth(x, q):
+        for _ in range(4):
+            x = x + K * (q - x**2)
+        return x
+
+    with mpmath.workdps(60):
+
+        def doubling(x, q):
+            return fourth(x, q) - x, mpmath.diff(lambda x: fourth(x, q), x) + 1
+
+        x, q = mpmath.findroot(doubling, (float(point.u[0]), point.value))
+        second, third = (float(mpmath.diff(lambda x: fourth(x, q), x, n)) for n in (2, 3))
+    assert point.value == pytest.approx(float(q), abs=1e-17)
+    assert point.coefficient == pytest.approx(second**2 / 4 + third / 6, rel=1e-3)
+    assert point.criticality == "supercritical"
+
+
+def test_a_neimark_sacker_point_and_its_eigenvectors():
+    """The delayed logistic map at r = 2, with multipliers exp(+-i pi/3) and B((x, y), (u, v)) = (-2 (x v + y u), 0), C = 0: Kuznetsov's formula."""
+    problem = cv.MapProblem(lambda x, r: np.array([r * x[0] * (1.0 - x[1]), x[0]]), [0.3, 0.3], 1.5)
+    (point,) = cv.diagram(problem, within=(1.2, 2.4)).of_kind("neimark-sacker")
+    assert point.frequency == pytest.approx(np.pi / 3.0, rel=1e-10)
+    A, m = np.array([[1.0, -1.0], [1.0, 0.0]]), np.exp(1j * np.pi / 3)
+    proper(point, A)
+    q = np.array([m, 1.0]) / np.sqrt(2.0)
+    values, vectors = np.linalg.eig(A.T)
+    p = vectors[:, np.argmin(abs(values - m.conj()))]
+    p = p / np.vdot(p, q).conj()
+
+    def B(a, b):
+        return np.array([-2.0 * (a[0] * b[1] + a[1] * b[0]), 0.0])
+
+    h20 = np.linalg.solve(m**2 * np.eye(2) - A, B(q, q))
+    h11 = np.linalg.solve(np.eye(2) - A, B(q, q.conj()))
+    exact = 0.5 * (m.conj() * np.vdot(p, 2 * B(q, h11) + B(q.conj(), h20))).real
+    assert point.coefficient == pytest.approx(exact, abs=1e-9) and point.criticality == word(exact)

@@ -6,6 +6,7 @@ import pytest
 import contvines as cv
 from contvines.bifurcation.normal_forms.coefficients import Forms, forms_at
 from contvines.bifurcation.normal_forms.critical import normal_form
+from tests.contvines.loci.systems import BAZYKIN_DOUBLE_ZERO, BAZYKIN_PLACE, bazykin
 
 
 class Bend:
@@ -37,20 +38,18 @@ class Bend:
         return x
 
 
-def bent_map(N, n, seed=1):
+def bent_map(N, n, seed):
     bend = Bend(n, seed)
-    problem = cv.MapProblem(lambda x, p: np.array(bend(N(bend.back(x)))), np.zeros(n), 0.0)
-    return Forms(problem, np.zeros(n), 0.0)
+    return cv.MapProblem(lambda x, p: np.array(bend(N(bend.back(x)))), np.zeros(n), 0.0)
 
 
-def bent_flow(N, n, seed=1):
+def bent_flow(N, n, seed):
     bend = Bend(n, seed)
 
     def f(x, p):
-        y = bend.back(x)
-        rate = N(y)
+        z = bend.back(x)
+        dz = N(z)
         # derivative of the bend along the rate, by the chain rule through its rounds
-        z, dz = list(y), list(rate)
         for i, others, c in bend.rounds:
             a, b = z[others[0]], z[others[-1]]
             da, db = dz[others[0]], dz[others[-1]]
@@ -58,144 +57,117 @@ def bent_flow(N, n, seed=1):
             z[i] = z[i] + Bend._add(z, others, c)
         return np.array(dz)
 
-    return Forms(cv.AlgebraicProblem(f, np.zeros(n), 0.0, spectrum="flow"), np.zeros(n), 0.0)
+    return cv.AlgebraicProblem(f, np.zeros(n), 0.0, spectrum="flow")
 
 
 def polar(x, y, factor):
     """Real and imaginary part of factor (x + i y), for complex numbers given by their parts."""
-    return factor[0] * x - factor[1] * y, factor[0] * y + factor[1] * x
+    return [factor[0] * x - factor[1] * y, factor[0] * y + factor[1] * x]
 
 
-def test_generalized_hopf():
-    omega, c1, c2 = 1.3, (0.0, -0.7), (0.45, 0.2)
-
-    def N(w):
-        r = w[0] ** 2 + w[1] ** 2
-        return polar(w[0], w[1], (c1[0] * r + c2[0] * r * r, omega + c1[1] * r + c2[1] * r * r))
-
-    found = normal_form("generalized-hopf", bent_flow(N, 2), [1j * omega])
-    assert found["l1"] == pytest.approx(0.0, abs=1e-9)
-    assert found["l2"] == pytest.approx(4 * c2[0] / omega, abs=1e-8)
+def circle(angle):
+    return np.cos(angle), np.sin(angle)
 
 
-def test_double_multipliers():
-    one = bent_map(lambda w: [w[0] + w[1], w[1] + 0.7 * w[0] ** 2 - 1.3 * w[0] * w[1]], 2, 5)
-    assert normal_form("resonance-1-1", one, []) == pytest.approx({"a": 0.7, "b": -1.3}, abs=1e-9)
-    two = bent_map(lambda w: [-w[0] + w[1], -w[1] + 0.7 * w[0] ** 3 - 1.3 * w[0] ** 2 * w[1]], 2, 5)
-    assert normal_form("resonance-1-2", two, []) == pytest.approx({"c": 0.7, "d": -1.3}, abs=1e-9)
-    flow = bent_flow(lambda w: [w[1], 0.7 * w[0] ** 2 - 1.3 * w[0] * w[1]], 2, 5)
-    assert normal_form("bogdanov-takens", flow, []) == pytest.approx({"a": 0.7, "b": -1.3}, abs=1e-9)
+def square(*parts):
+    return sum(part**2 for part in parts)
+
+
+OMEGA = 1.4
+P = np.array([[-0.4, 0.7], [0.3, 0.5]])  # of two amplitudes
+ANGLES = (0.8, 2.3)
+B, C = (0.5, 0.4), (-0.3, 0.9)  # of strong resonances
+
+
+def added(m, w, conjugate):
+    """m z + B times a power of conj(z) + C z |z|^2."""
+    r = square(*w)
+    parts = polar(*w, m), polar(*conjugate(*w), B), polar(w[0] * r, w[1] * r, C)
+    return [sum(part) for part in zip(*parts)]
+
+
+def growth(first, second):
+    return [1 + row[0] * first + row[1] * second for row in P]
+
+
+def generalized_hopf(w):
+    r = square(*w)
+    return polar(*w, (0.45 * r * r, 1.3 - 0.7 * r + 0.2 * r * r))
+
+
+def zero_hopf(w):
+    x, y, z = w
+    pair = polar(y, z, (0.5 * x + 0.35 * x * x, OMEGA + 0.2 * x))
+    return [0.6 * x * x - 0.7 * square(y, z), *pair]
+
+
+def fold_neimark_sacker(w):
+    x, y, z = w
+    return [x + 0.6 * x * x - 0.7 * square(y, z), *polar(*polar(y, z, circle(OMEGA)), (1 + 0.5 * x, 0.2 * x))]
+
+
+def double_neimark_sacker(w):
+    parts = polar(*w[:2], circle(ANGLES[0])), polar(*w[2:], circle(ANGLES[1]))
+    return [g * x for g, part in zip(growth(square(*w[:2]), square(*w[2:])), parts) for x in part]
+
+
+def flip_neimark_sacker(w):
+    g = growth(w[0] ** 2, square(*w[1:]))
+    return [-g[0] * w[0], *(g[1] * x for x in polar(*w[1:], circle(ANGLES[0])))]
+
+
+def double_hopf(w):
+    g = growth(square(*w[:2]), square(*w[2:]))
+    return [*polar(*w[:2], (g[0] - 1, ANGLES[0])), *polar(*w[2:], (g[1] - 1, ANGLES[1]))]
+
+
+FOLD_AND_PAIR = {"s": -1.0, "theta": 0.5 / 0.6}
+TWO = {"theta": P[0, 1] / P[1, 1], "delta": P[1, 0] / P[0, 0]}
+A = -1j * complex(*C) / np.hypot(*B)
+TURNED = complex(*C) * np.exp(-2j * np.pi / 3)
+THIRD = {
+    "b": np.sqrt(2) * np.hypot(*B),
+    "a": (TURNED.real / np.hypot(*B) ** 2 - 1) / 3,
+}
+pair, slow = np.exp(1j * OMEGA), pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    ("problem", "kind", "critical", "exact"),
+    [
+        (bent_flow(generalized_hopf, 2, 1), "generalized-hopf", [1.3j], {"l1": 0.0, "l2": 4 * 0.45 / 1.3}),
+        (bent_flow(lambda w: [w[1], 0.7 * w[0] ** 2 - 1.3 * w[0] * w[1]], 2, 5), "bogdanov-takens", [], {"a": 0.7, "b": -1.3}),
+        (bent_map(lambda w: added(circle(2 * np.pi / 3), w, lambda x, y: (x * x - y * y, -2 * x * y)), 2, 1), "resonance-1-3",
+         [np.exp(2j * np.pi / 3)], THIRD),
+        (bent_map(lambda w: added((0, 1), w, lambda x, y: (x**3 - 3 * x * y * y, y**3 - 3 * x * x * y)), 2, 1), "resonance-1-4",
+         [1j], {"A_re": A.real, "A_im": A.imag}),
+        # what is left of the cubic terms is in the normal form already
+        pytest.param(bent_flow(zero_hopf, 3, 7), "zero-hopf", [1j * OMEGA], FOLD_AND_PAIR | {"b": 0.6, "c": -1.4, "e": 0.35}, marks=slow),
+        pytest.param(bent_map(fold_neimark_sacker, 3, 7), "fold-neimark-sacker", [pair], FOLD_AND_PAIR, marks=slow),
+        pytest.param(bent_map(double_neimark_sacker, 4, 1), "double-neimark-sacker", [np.exp(1j * t) for t in ANGLES],
+                     TWO | {"p11": 2 * P[0, 0]}, marks=slow),
+        pytest.param(bent_map(flip_neimark_sacker, 3, 1), "flip-neimark-sacker", [np.exp(1j * ANGLES[0])], TWO | {"p11": P[0, 0]}, marks=slow),
+        pytest.param(bent_flow(double_hopf, 4, 1), "double-hopf", [1j * t for t in ANGLES], TWO, marks=slow),
+    ],
+)  # fmt: skip
+def test_a_bent_normal_form_is_found_again(problem, kind, critical, exact):
+    found = normal_form(kind, Forms(problem, problem.u0, 0.0), critical)
+    assert {name: found[name] for name in exact} == pytest.approx(exact, abs=1e-9)
 
 
 def test_a_double_zero_beside_a_pole():
-    """Bazykin's predator and prey, whose rates have a pole at x = -1 / al: wide samples lie on both sides of it.
+    """Bazykin's predator and prey, whose rates have a pole at x = -1 / alpha: wide samples lie on both sides of it.
 
-    Where F, trace and determinant vanish, and a and b there by Kuznetsov's formulas (Elements, 8.54): mpmath and SymPy, thirty digits. With the length of
-    the critical vector both change alike.
+    a and b by Kuznetsov's formulas (Elements, 8.54): SymPy, thirty digits. With the length of the critical vector both change alike.
     """
     units = np.array([50.0, 5.0])
-
-    def rates(u, p):
-        x, y = units * u
-        eaten = x * y / (1 + p.al * x)
-        return np.array([x - eaten - x**2 / 100, -y + eaten - p.de * y**2]) / units
-
-    place = np.array([6.26576552895236307, 3.60155393683666477]) / units
-    values = {"al": 0.45362432777812945521, "de": 0.17512759295021742421}
-    problem = cv.AlgebraicProblem(rates, place, values, parameter="al", spectrum="flow")
-    found = normal_form("bogdanov-takens", forms_at(problem, place, values["al"]), [])
+    alpha, delta = BAZYKIN_DOUBLE_ZERO
+    problem = cv.AlgebraicProblem(
+        lambda u, p: bazykin(units * u, p) / units,
+        BAZYKIN_PLACE / units,
+        {"alpha": alpha, "delta": delta},
+        parameter="alpha",
+        spectrum="flow",
+    )
+    found = normal_form("bogdanov-takens", forms_at(problem, problem.u0, alpha), [])
     assert found["b"] / found["a"] == pytest.approx(-0.05253877649285624 / 0.039453091123676357, rel=1e-9)
-
-
-def test_strong_resonances_three_and_four():
-    b, c = (0.5, 0.4), (-0.3, 0.9)
-
-    def third(w):
-        x, y = w
-        r = x * x + y * y
-        # m z + b conj(z)^2 + c z |z|^2
-        m = polar(x, y, (np.cos(2 * np.pi / 3), np.sin(2 * np.pi / 3)))
-        square = polar(x * x - y * y, -2 * x * y, b)
-        cube = polar(x * r, y * r, c)
-        return [m[i] + square[i] + cube[i] for i in range(2)]
-
-    found = normal_form("resonance-1-3", bent_map(third, 2), [np.exp(2j * np.pi / 3)])
-    turned = complex(*c) * np.exp(-2j * np.pi / 3)
-    assert found["b"] == pytest.approx(np.sqrt(2) * np.hypot(*b), abs=1e-9)
-    assert found["a"] == pytest.approx((turned.real / np.hypot(*b) ** 2 - 1) / 3, abs=1e-8)
-
-    def fourth(w):
-        x, y = w
-        r = x * x + y * y
-        cube = polar(x * r, y * r, c)
-        other = polar(x**3 - 3 * x * y * y, -(3 * x * x * y - y**3), b)
-        return [-y + cube[0] + other[0], x + cube[1] + other[1]]
-
-    found = normal_form("resonance-1-4", bent_map(fourth, 2), [1j])
-    A = -1j * complex(*c) / np.hypot(*b)
-    assert complex(found["A_re"], found["A_im"]) == pytest.approx(A, abs=1e-8)
-
-
-@pytest.mark.slow
-def test_fold_and_pair():
-    omega, b, c, D = 1.4, 0.6, -0.7, (0.5, 0.2)
-
-    def flow(w):
-        x, y, z = w
-        r = y * y + z * z
-        pair = polar(y, z, (D[0] * x + 0.35 * x * x, omega + D[1] * x))
-        return [b * x * x + c * r, *pair]
-
-    found = normal_form("zero-hopf", bent_flow(flow, 3, 7), [1j * omega])
-    assert found["s"] == -1.0 and found["theta"] == pytest.approx(D[0] / b, abs=1e-9)
-    assert found["b"] == pytest.approx(b, abs=1e-9) and found["c"] == pytest.approx(2 * c, abs=1e-9)
-    assert found["e"] == pytest.approx(
-        0.35, abs=1e-8
-    )  # what is left of the cubic terms is in the normal form already
-
-    def step(w):
-        x, y, z = w
-        turned = polar(y, z, (np.cos(omega), np.sin(omega)))
-        return [x + b * x * x + c * (y * y + z * z), *polar(*turned, (1 + D[0] * x, D[1] * x))]
-
-    found = normal_form("fold-neimark-sacker", bent_map(step, 3, 7), [np.exp(1j * omega)])
-    assert found["theta"] == pytest.approx(D[0] / b, abs=1e-9) and found["s"] == -1.0
-
-
-@pytest.mark.slow
-def test_two_amplitudes():
-    p = np.array([[-0.4, 0.7], [0.3, 0.5]])
-    angles = (0.8, 2.3)
-
-    def growth(first, second):
-        return [1 + p[i, 0] * first + p[i, 1] * second for i in range(2)]
-
-    def pairs(w):
-        g = growth(w[0] ** 2 + w[1] ** 2, w[2] ** 2 + w[3] ** 2)
-        parts = [polar(w[2 * i], w[2 * i + 1], (np.cos(t), np.sin(t))) for i, t in enumerate(angles)]
-        return [g[i] * x for i in range(2) for x in parts[i]]
-
-    critical = [np.exp(1j * t) for t in angles]
-    found = normal_form("double-neimark-sacker", bent_map(pairs, 4), critical)
-    assert found["theta"] == pytest.approx(p[0, 1] / p[1, 1], abs=1e-7)
-    assert found["delta"] == pytest.approx(p[1, 0] / p[0, 0], abs=1e-7)
-    assert found["p11"] == pytest.approx(2 * p[0, 0], abs=1e-7)
-
-    def flip(w):
-        g = growth(w[0] ** 2, w[1] ** 2 + w[2] ** 2)
-        turned = polar(w[1], w[2], (np.cos(angles[0]), np.sin(angles[0])))
-        return [-g[0] * w[0], g[1] * turned[0], g[1] * turned[1]]
-
-    found = normal_form("flip-neimark-sacker", bent_map(flip, 3), critical[:1])
-    assert found["p11"] == pytest.approx(p[0, 0], abs=1e-7)
-    assert found["theta"] == pytest.approx(p[0, 1] / p[1, 1], abs=1e-7)
-    assert found["delta"] == pytest.approx(p[1, 0] / p[0, 0], abs=1e-7)
-
-    def flow(w):
-        g = growth(w[0] ** 2 + w[1] ** 2, w[2] ** 2 + w[3] ** 2)
-        parts = [polar(w[2 * i], w[2 * i + 1], (g[i] - 1, t)) for i, t in enumerate(angles)]
-        return [x for part in parts for x in part]
-
-    found = normal_form("double-hopf", bent_flow(flow, 4), [1j * t for t in angles])
-    assert found["theta"] == pytest.approx(p[0, 1] / p[1, 1], abs=1e-7)
-    assert found["delta"] == pytest.approx(p[1, 0] / p[0, 0], abs=1e-7)

@@ -6,8 +6,7 @@ import pytest
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from orbits import Coupled
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, COUPLED
 
 pytestmark = pytest.mark.slow
 
@@ -22,25 +21,25 @@ def first_node_apart(problem, u):
     return float(np.linalg.norm((nodes[0] - later) / problem.equations.unit[0])) / 2
 
 
-@pytest.mark.parametrize("label", ["SB1", "PD1", "PD2"])
-def test_the_branch_that_leaves_has_the_size_that_the_coefficient_says(label):
-    graph = cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 1.16))
-    assert graph[label].coefficient == pytest.approx(coefficient_of_the_branch(graph, label), rel=1e-5)
+@pytest.fixture(scope="module")
+def graphs():
+    return {
+        ABSORBER: cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 1.16)),
+        COUPLED: cv.diagram(
+            COUPLED.orbit("LR", frequency=1.01), over="frequency", within=(0.999, 1.02), depth=1
+        ),
+    }
 
 
-def test_the_same_of_the_coupled_absorber():
-    machine = Coupled(
-        forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
-    )
-    graph = cv.diagram(machine.orbit("LR", frequency=1.01), over="frequency", within=(0.999, 1.02), depth=1)
-    assert graph["SB1"].coefficient == pytest.approx(coefficient_of_the_branch(graph, "SB1"), rel=1e-5)
-
-
-def coefficient_of_the_branch(graph, label):
+@pytest.mark.parametrize(
+    ("machine", "label"), [(ABSORBER, "SB1"), (ABSORBER, "PD1"), (ABSORBER, "PD2"), (COUPLED, "SB1")]
+)
+def test_the_branch_that_leaves_has_the_size_that_the_coefficient_says(graphs, machine, label):
     """c of x -> m x + c x^3, whose motion of two returns lies at x^2 = (-1 - m) / c, from the branch that leaves."""
+    graph = graphs[machine]
     point = graph[label]
     problem, n = point.problem, len(point.u)
-    (child,) = [b for b in graph.branches.values() if b.seed == label and b.points.shape[1] == 2 * n]
+    (child,) = [b for b in graph if b.seed == label and b.points.shape[1] == 2 * n]
     near = (point.value - 0.1, point.value + 0.1)
     root, side = Engine(problem, near, Settings()), Engine(child.problem, near, Settings())
     sizes, ratios = [], []
@@ -55,4 +54,4 @@ def coefficient_of_the_branch(graph, label):
         if x > 1e-3 / np.sqrt(abs(point.coefficient)):
             sizes.append(x * x)
             ratios.append((-1.0 - m) / (x * x))
-    return np.polyfit(sizes[:5], ratios[:5], 2)[-1]
+    assert point.coefficient == pytest.approx(np.polyfit(sizes[:5], ratios[:5], 2)[-1], rel=1e-5)
