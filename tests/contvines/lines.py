@@ -14,7 +14,7 @@ def inspect(data, u, p, work, row):
 class Line(ProblemDefaults):
     """u = p, or the curve whose function returns F, dF/du and dF/dp, with a multiplier 1/2 or those given, and with margins."""
 
-    dimension, spectrum, parameter = 1, "map", "p"
+    dimension, parameter = 1, "p"
     kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect)
 
     def __init__(
@@ -26,6 +26,7 @@ class Line(ProblemDefaults):
     ):
         self.margins, self.multipliers, self.curve, self.data = margins, multipliers, curve, self
         self.n_margins, self.n_multipliers = len(margins(*start)), len(multipliers(*start))
+        self.spectrum = "map" if self.n_multipliers else "none"
         self.u0, self.p0 = np.array(start[:1]), start[1]
 
     def workspace(self):

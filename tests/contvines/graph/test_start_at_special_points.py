@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 
 import contvines as cv
-import orbits
-
-FRICTION = 0.5
+from tests.machines import ABSORBER
 
 
 @pytest.fixture(scope="module")
 def graph():
-    absorber = orbits.Absorber(restitution=0.76, friction=FRICTION, gravity=0.211, mass_ratio=0.006)
-    return cv.diagram(absorber.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.2), depth=2)
+    return cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.2), depth=2)
 
 
 @pytest.mark.slow
@@ -22,21 +19,25 @@ def test_begun_at_each_special_point_of_an_absorber(graph, over):
     points = [point for point in graph.special.values() if point.kind != "end"]
     assert {point.kind for point in points} >= {"fold", "symmetry-breaking", "period-doubling", "wall-graze"}
     for point in points:
-        start, reach = (point.value, 0.03) if over == "amplitude" else (FRICTION, 0.02)
+        start, reach = (point.value, 0.03) if over == "amplitude" else (ABSORBER.friction, 0.02)
         begun = cv.diagram(point.orbit, over=over, within=(start - reach, start + reach), depth=0)
         kinds = borders if point.kind in borders else {point.kind}
         found = [p.value for p in begun.special.values() if p.kind in kinds]
         assert min(abs(np.array(found) - start), default=1.0) < 1e-7, point.label
 
 
-def test_begun_at_a_fold_from_which_newtons_method_leads_to_a_solution_far_away():
+def values(graph, kind):
+    return [point.value for point in graph.of_kind(kind)]
+
+
+# 1e-13 off, where a Newton step at fixed p is as long as rounding has it
+@pytest.mark.parametrize("off", np.linspace(-1e-13, 1e-13, 9))
+def test_begun_at_a_fold_from_which_newtons_method_leads_to_a_solution_far_away(off):
     """p = 2 x^3 - 3 x^2 has a fold at (1, -1), and at p = -1 the solution x = -1/2, too."""
-    # 1e-13 off, where a Newton step at fixed p is as long as rounding has it
-    for off in np.linspace(-1e-13, 1e-13, 9):
-        problem = cv.AlgebraicProblem(lambda x, p: 2.0 * x**3 - 3.0 * x**2 - p, [1.0 + off], -1.0)
-        graph = cv.diagram(problem, within=(-1.5, -0.5))
-        assert [p.value for p in graph.of_kind("fold")] == pytest.approx([-1.0], abs=1e-12)
-        assert graph["B1"].points[:, 0].min() > 0.4
+    problem = cv.AlgebraicProblem(lambda x, p: 2.0 * x**3 - 3.0 * x**2 - p, [1.0 + off], -1.0)
+    graph = cv.diagram(problem, within=(-1.5, -0.5))
+    assert values(graph, "fold") == pytest.approx([-1.0], abs=1e-12)
+    assert graph["B1"].points[:, 0].min() > 0.4
 
 
 def test_begun_at_special_points_against_another_parameter():
@@ -44,13 +45,13 @@ def test_begun_at_special_points_against_another_parameter():
     flow = cv.FlowProblem(
         lambda x, p: [p.r + p.q * x[0] - p.s * x[0] ** 2], [1.0], {"r": 1.0, "s": 1.0, "q": 1.0}
     )
-    fold = cv.diagram(flow, over="r", within=(-1.0, 2.0)).of_kind("fold")[0]
-    assert fold.value == pytest.approx(-0.25, abs=1e-12)
-    again = cv.diagram(fold, over="q", within=(0.5, 1.5))
-    assert [p.value for p in again.of_kind("fold")] == pytest.approx([1.0], abs=1e-12)
-    x, q = again["B1"].points[:, 0], again["B1"].values
+    (fold,) = cv.diagram(flow, over="r", within=(-1.0, 2.0)).of_kind("fold")
+    again = cv.diagram(fold, within=(-1.0, 2.0))
+    assert [fold.value, *values(again, "fold")] == pytest.approx([-0.25, -0.25], abs=1e-12)
+    other = cv.diagram(fold, over="q", within=(0.5, 1.5))
+    assert values(other, "fold") == pytest.approx([1.0], abs=1e-12)
+    x, q = other["B1"].points[:, 0], other["B1"].values
     assert -0.25 + q * x - x**2 == pytest.approx(0.0, abs=1e-9)
-    assert cv.diagram(fold, within=(-1.0, 2.0)).of_kind("fold")[0].value == pytest.approx(-0.25, abs=1e-12)
 
 
 def rotated(x, p):
@@ -61,19 +62,19 @@ def rotated(x, p):
 
 @pytest.mark.parametrize("start", [0.0, 1e-16, -1e-13])
 @pytest.mark.parametrize(
-    ("kind", "problem"),
+    ("kind", "problem", "f", "n"),
     [
-        ("neimark-sacker", lambda p: cv.MapProblem(rotated, [0.0, 0.0], {"p": p})),
-        ("period-doubling", lambda p: cv.MapProblem(lambda x, q: [-(1 + q.p) * x[0] + x[0] ** 3], [0.0], {"p": p})),
-        ("branch-point", lambda p: cv.MapProblem(lambda x, q: [(1 + q.p) * x[0] - x[0] ** 3], [0.0], {"p": p})),
-        ("branch-point", lambda p: cv.AlgebraicProblem(lambda x, q: q * x - x**3, [0.0], p)),
-        ("hopf", lambda p: cv.FlowProblem(lambda x, q: [q.p * x[0] - x[1], x[0] + q.p * x[1] - x[1] ** 3], [0.0, 0.0], {"p": p})),
-        ("fold", lambda p: cv.FlowProblem(lambda x, q: [q.p - x[0] ** 2], [0.0], {"p": p})),
+        ("neimark-sacker", cv.MapProblem, rotated, 2),
+        ("period-doubling", cv.MapProblem, lambda x, q: [-(1 + q.p) * x[0] + x[0] ** 3], 1),
+        ("branch-point", cv.MapProblem, lambda x, q: [(1 + q.p) * x[0] - x[0] ** 3], 1),
+        ("branch-point", cv.AlgebraicProblem, lambda x, q: q.p * x - x**3, 1),
+        ("hopf", cv.FlowProblem, lambda x, q: [q.p * x[0] - x[1], x[0] + q.p * x[1] - x[1] ** 3], 2),
+        ("fold", cv.FlowProblem, lambda x, q: [q.p - x[0] ** 2], 1),
     ],
-)  # fmt: skip
-def test_begun_where_it_is_known_to_lie(kind, problem, start):
-    graph = cv.diagram(problem(start), within=(-0.2, 0.3), depth=1)
-    assert [p.value for p in graph.of_kind(kind)] == pytest.approx([0.0], abs=1e-12)
+)
+def test_begun_where_it_is_known_to_lie(kind, problem, f, n, start):
+    graph = cv.diagram(problem(f, [0.0] * n, {"p": start}), within=(-0.2, 0.3), depth=1)
+    assert values(graph, kind) == pytest.approx([0.0], abs=1e-12)
     assert not graph.unresolved
     assert len(graph) == (1 if kind in ("fold", "neimark-sacker") else 2)
 
@@ -85,7 +86,6 @@ def test_begun_at_a_cusp_on_a_locus():
     )
     locus = cv.locus(cv.diagram(flow, over="b", within=(-1, 1))["LP1"], over="a", within=(0, 2))
     cusp = locus.points["CP1"]
-    across = cv.diagram(cusp, over="a", within=(0.0, 1.0))
-    assert [p.value for p in across.of_kind("branch-point")] == pytest.approx([1 / 3], abs=1e-9)
-    along = cv.diagram(cusp, within=(-0.5, 0.5))
+    across, along = cv.diagram(cusp, over="a", within=(0.0, 1.0)), cv.diagram(cusp, within=(-0.5, 0.5))
+    assert values(across, "branch-point") == pytest.approx([1 / 3], abs=1e-9)
     assert {p.kind for p in along.special.values()} == {"end"} and len(along) == 1

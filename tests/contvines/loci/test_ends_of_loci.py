@@ -1,28 +1,25 @@
-"""Where a locus of folds of cycles ends, in closed form."""
+"""Where a locus ends, in closed form, and with which digits that is told."""
 
 import numpy as np
 import pytest
 
 import contvines as cv
 import orbits
+from tests.contvines.loci.systems import bautin
 
 
 def test_folds_of_cycles_end_at_the_generalized_hopf_point():
-    """r' = r (mu + b r^2 - r^4): cycles fold where b^2 + 4 mu = 0 with b > 0, and are nothing at the origin."""
-
-    def f(x, p):
-        square = x[0] ** 2 + x[1] ** 2
-        growth = p.mu + p.b * square - square**2
-        return [growth * x[0] - x[1], x[0] + growth * x[1]]
-
-    flow = cv.FlowProblem(f, [0.0, 0.0], {"mu": -1.0, "b": 1.0})
+    """Cycles fold where b^2 + 4 mu = 0 with b > 0, and are nothing at the origin."""
+    flow = cv.FlowProblem(bautin, [0.0, 0.0], {"mu": -1.0, "b": 1.0})
     locus = cv.locus(cv.diagram(flow, over="mu", within=(-1, 1))["LP1"], over="b", within=(-1, 2))
-    mu, b = np.array(locus.values).T
-    assert mu == pytest.approx(-(b**2) / 4, abs=1e-8)
+    mu, b = locus.values.T
+    assert mu == pytest.approx(-(b**2) / 4, abs=1e-10) and b.max() == 2.0
     assert locus.ended == (
         "the motion becomes an equilibrium, at mu = 0, b = 0",
         "reaches the end of the interval, b = 2",
     )
+    (point,) = locus.points.values()
+    assert point.kind == "generalized-hopf" and point.value == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_a_table_has_no_digits_that_tell_a_locus_from_its_own_point():

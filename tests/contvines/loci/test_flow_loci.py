@@ -11,25 +11,25 @@ from scipy.optimize import brentq
 
 import contvines as cv
 from contvines.problems.abilities import Adaptive
+from tests.contvines.loci.systems import BAZYKIN_DOUBLE_ZERO, bautin, bazykin
 
 pytestmark = pytest.mark.slow
 
 
+def spiral(z, growth, turn, inward=1.0):
+    """z' = (growth + i turn) z - inward z |z|^2."""
+    rate = growth - inward * (z[0] ** 2 + z[1] ** 2)
+    return [rate * z[0] - turn * z[1], turn * z[0] + rate * z[1]]
+
+
 def ring(x):
-    growth = 1 - x[0] ** 2 - x[1] ** 2
-    return [x[0] * growth - x[1], x[0] + x[1] * growth]
+    return spiral(x, 1.0, 1.0)
 
 
-def ring_orbit(flow, *rest):
-    t = np.linspace(0, 2 * np.pi, 101)
-    return flow.cycle(t, np.column_stack([np.cos(t), np.sin(t), *(np.full(101, value) for value in rest)]))
-
-
-def bautin(x, p):
-    """r' = r (b1 + b2 r^2 - r^4): folds of cycles at b1 = -b2^2 / 4, b2 > 0."""
-    square = x[0] ** 2 + x[1] ** 2
-    growth = p.b1 + p.b2 * square - square**2
-    return [x[0] * growth - x[1], x[0] + x[1] * growth]
+def cycle(flow, states):
+    """The orbit whose states are given as functions of the phase."""
+    t = np.linspace(0.0, 2.0 * np.pi, 101)
+    return flow.cycle(t, np.column_stack([part + 0.0 * t for part in states(t)]))
 
 
 def bogdanov_takens(x, p):
@@ -40,6 +40,11 @@ def bogdanov_takens(x, p):
 def nerve(x, p):
     """FitzHugh-Nagumo."""
     return [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])]
+
+
+def folds_of_the_nerve(start, within):
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], start)
+    return cv.diagram(flow, over="I", within=within, depth=1, settings={"max_branches": 2})
 
 
 def canard(e, low, high):
@@ -63,26 +68,9 @@ def canard(e, low, high):
     return brentq(lambda i: height(i, -1.6, 1.0) - height(i, -0.1, -1.0), low, high, xtol=1e-14)
 
 
-def resonant(x, p):
-    """The same beside a cycle: folds of cycles, Neimark-Sacker points and a resonance 1:1."""
-    return [*ring(x), *bogdanov_takens(x[2:], p)]
-
-
-def test_folds_of_cycles_end_at_a_generalized_hopf_point():
-    graph = cv.diagram(cv.FlowProblem(bautin, [0.0, 0.0], {"b1": -1.0, "b2": 0.8}), over="b1", within=(-1, 1))
-    locus = cv.locus(graph["LP1"], over="b2", within=(-1.0, 2.0))
-    p, q = locus.values.T
-    assert np.abs(p + q**2 / 4).max() < 1e-10
-    assert q.max() == 2.0
-    (point,) = locus.points.values()
-    assert point.kind == "generalized-hopf"
-    assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
-
-
 def test_folds_of_cycles_go_on_through_a_canard_explosion():
     """Where the equations are singular to rounding along the whole explosion. By symmetry, (x, y, I) to -(x, y, I), both folds have the sum 7/4 of currents."""
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})
-    graph = cv.diagram(flow, over="I", within=(0.0, 2.0), depth=1, settings={"max_branches": 2})
+    graph = folds_of_the_nerve({"I": 0.0, "e": 0.08}, (0.0, 2.0))
     left, right = (cv.locus(graph[label], over="e", within=(0.02, 0.5)) for label in ("LP1", "LP2"))
     assert isinstance(left.problem, Adaptive)  # the mesh and the phase follow the cycles
     for locus in (left, right):
@@ -97,8 +85,7 @@ def test_folds_of_cycles_go_on_through_a_canard_explosion():
 
 def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
     """At x = -1/2: with f the cubic and b = 0.8 the first Lyapunov coefficient is zero where the third derivative is -b / (1 - e b^2) times the second one's square."""
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.70, "e": 0.9374})
-    graph = cv.diagram(flow, over="I", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
+    graph = folds_of_the_nerve({"I": 0.70, "e": 0.9374}, (0.70, 0.712))
     locus = cv.locus(graph["LP1"], over="e", within=(0.9373, 0.938))
     assert locus.ended[1] == "the motion becomes an equilibrium, at I = 0.7083333333, e = 0.9375"
     (point,) = locus.points.values()
@@ -106,25 +93,29 @@ def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
     assert point.value == pytest.approx((17 / 24, 15 / 16), abs=1e-11)
 
 
+def test_a_hopf_point_met_by_cycles_is_followed_as_that_of_the_equilibrium():
+    """1 - v^2 = 0.8 e at rest with w = (v + 0.7) / 0.8 and I = w - v + v^3 / 3."""
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})
+    graph = cv.diagram(flow.attractor(I=0.8), over="I", within=(0.0, 1.0), depth=0)
+    locus = cv.locus(graph["HB1"], over="e", within=(0.04, 0.12))
+    v = -np.sqrt(1.0 - 0.8 * locus.values[:, 1])
+    assert locus.values[:, 0] == pytest.approx((v + 0.7) / 0.8 - v + v**3 / 3.0, abs=1e-9)
+    assert locus.values[[0, -1], 1] == pytest.approx([0.04, 0.12])
+
+
 def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable(tmp_path):
-    graph = cv.diagram(
-        cv.FlowProblem(bautin, [0.0, 0.0], {"b1": -1.0, "b2": -0.5}), over="b1", within=(-1, 1)
-    )
+    flow = cv.FlowProblem(bautin, [0.0, 0.0], {"mu": -1.0, "b": -0.5})
+    graph = cv.diagram(flow, over="mu", within=(-1, 1))
     assert not graph.of_kind("fold")
-    chart = cv.chart(graph, "b2", (-1.5, 2.0))
+    chart = cv.chart(graph, "b", (-1.5, 2.0))
     assert {locus.kind for locus in chart.loci.values()} == {"hopf", "fold"}
     (point,) = chart.points.values()
     assert (point.kind, len(point.on)) == ("generalized-hopf", 2)
     assert len(chart.regions) == 3
     for region in chart.regions:
-        b1, b2 = region.at
-        wanted = (
-            ["cycle"]
-            if b1 > 0
-            else ["cycle", "equilibrium"]
-            if b2 > 0 and 4 * b1 > -(b2**2)
-            else ["equilibrium"]
-        )
+        mu, b = region.at
+        both = mu <= 0 < b and 4 * mu > -(b**2)
+        wanted = ["cycle"] if mu > 0 else ["cycle", "equilibrium"] if both else ["equilibrium"]
         assert sorted(region.words) == wanted
         assert not region.others
     chart.save(tmp_path / "bautin.vines")
@@ -133,14 +124,19 @@ def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable(tmp_path):
 
 
 def test_loci_of_cycles_meet_at_a_resonance():
-    flow = cv.FlowProblem(resonant, [1.0, 0, 0, 0], {"b1": -0.05, "b2": -0.3}, scale=1.0)
-    orbit = ring_orbit(flow, (0.3 - np.sqrt(0.29)) / 2, 0.0)
+    """Bogdanov and Takens beside a ring: folds of cycles, Neimark-Sacker points and a resonance 1:1."""
+    flow = cv.FlowProblem(
+        lambda x, p: [*ring(x), *bogdanov_takens(x[2:], p)],
+        [1.0, 0, 0, 0],
+        {"b1": -0.05, "b2": -0.3},
+        scale=1.0,
+    )
+    orbit = cycle(flow, lambda t: [np.cos(t), np.sin(t), (0.3 - np.sqrt(0.29)) / 2, 0.0])
     graph = cv.diagram(orbit, over="b1", within=(-0.2, 0.2), depth=0)
     assert graph["NS1"].value == pytest.approx(0.0, abs=1e-11)
-    fold = cv.locus(graph["LP1"], over="b2", within=(-0.6, 0.4))
+    fold, pair = (cv.locus(graph[label], over="b2", within=(-0.6, 0.4)) for label in ("LP1", "NS1"))
     p, q = fold.values.T
     assert np.abs(p - q**2 / 4).max() < 1e-10
-    pair = cv.locus(graph["NS1"], over="b2", within=(-0.6, 0.4))
     p, q = pair.values.T
     assert np.abs(p).max() < 1e-10
     assert q.max() == pytest.approx(0.0, abs=1e-6)
@@ -162,8 +158,6 @@ def test_homoclinic_orbits_of_a_long_period_come_from_a_bogdanov_takens_point():
     assert near.any()
     assert ratio[near] == pytest.approx(-6 / 25, abs=0.01)
     assert "too short" in locus.ended[1]
-    hopf = cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2))
-    assert [point.kind for point in hopf.points.values()] == ["bogdanov-takens"]
     with pytest.raises(ValueError, match="homoclinic"):
         cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2), period=50.0)
 
@@ -176,12 +170,13 @@ def test_homoclinic_orbits_begin_at_a_bogdanov_takens_point():
 
     flow = cv.FlowProblem(takens, [-0.2, 0.0], {"b1": -0.04, "b2": 0.1})
     graph = cv.diagram(flow, over="b1", within=(-0.3, 0.1), depth=0)
-    (point,) = cv.locus(graph["HB1"], over="b2", within=(-0.3, 0.6)).points.values()
-    locus = cv.locus(point, over="b2", within=(-0.3, 0.6))
+    span = {"over": "b2", "within": (-0.3, 0.6)}
+    (point,) = cv.locus(graph["HB1"], **span).points.values()
+    locus = cv.locus(point, **span)
     b1, b2 = locus.values[locus.values[:, 1] > 0.005].T
     fourth = -b1 / 4.0
     assert (np.abs(b2 / np.sqrt(fourth) - 10 / 7 - 288 / 2401 * np.sqrt(fourth)) < 0.01 * fourth).all()
-    longer = cv.locus(point, over="b2", within=(-0.3, 0.6), period=400.0)
+    longer = cv.locus(point, **span, period=400.0)
     assert longer.orbit(0).period == pytest.approx(400.0)
     assert longer.values[:, 1].min() < 0.5 * locus.values[:, 1].min()
     with pytest.raises(ValueError, match="lies on a locus over"):
@@ -189,26 +184,14 @@ def test_homoclinic_orbits_begin_at_a_bogdanov_takens_point():
 
 
 def test_a_homoclinic_locus_from_a_diagram_and_from_a_bogdanov_takens_point_is_one():
-    """Bazykin's predator and prey."""
-
-    def rates(x, p):
-        eaten = x[0] * x[1] / (1 + p.alpha * x[0])
-        return [x[0] - eaten - 0.01 * x[0] ** 2, -x[1] + eaten - p.delta * x[1] ** 2]
-
-    flow = cv.FlowProblem(rates, [20.0, 5.5], {"alpha": 0.4, "delta": 0.15})
+    flow = cv.FlowProblem(bazykin, [20.0, 5.5], {"alpha": 0.4, "delta": 0.15})
     graph = cv.diagram(flow, over="alpha", within=(0.1, 1.0))
     chart = cv.chart(graph, "delta", (0.05, 0.5), regions=False)
     (locus,) = (locus for locus in chart.loci.values() if locus.kind == "homoclinic")
     (point,) = chart.points.values()
-    assert point.kind == "bogdanov-takens"
-    assert set(point.on) == {"HB1", "LP2", locus.label}
+    assert point.kind == "bogdanov-takens" and set(point.on) == {"HB1", "LP2", locus.label}
+    assert point.value == pytest.approx(BAZYKIN_DOUBLE_ZERO, abs=1e-9)
     assert np.abs(locus.values - point.value).max(axis=1).min() < 1e-3
-
-
-def spiral(z, growth, turn):
-    """z' = (growth + i turn) z - z |z|^2."""
-    inward = growth - z[0] ** 2 - z[1] ** 2
-    return [inward * z[0] - turn * z[1], turn * z[0] + inward * z[1]]
 
 
 def twisted(x, z, growth, other):
@@ -238,8 +221,7 @@ def two_pairs(x, p):
 def fold_and_flip(x, p):
     """Cycles s = r^2 - 1 = +-sqrt a, with a multiplier -exp(2 pi (b + s))."""
     s = x[0] ** 2 + x[1] ** 2 - 1.0
-    growth = p.a - s * s
-    return [growth * x[0] - x[1], x[0] + growth * x[1], *twisted(x, x[2:], p.b + s, -0.4)]
+    return [*spiral(x, p.a - s * s, 1.0, 0.0), *twisted(x, x[2:], p.b + s, -0.4)]
 
 
 @pytest.mark.parametrize(
@@ -251,7 +233,8 @@ def fold_and_flip(x, p):
 )
 def test_two_things_at_once_beside_a_ring(f, label, kind, p11):
     flow = cv.FlowProblem(f, [1.0, 0, 0, 0, 0, 0], {"a": -0.3, "b": 0.12}, scale=1.0)
-    graph = cv.diagram(ring_orbit(flow, 0.0, 0.0, 0.0, 0.0), over="a", within=(-0.5, 0.05), depth=0)
+    orbit = cycle(flow, lambda t: [np.cos(t), np.sin(t), 0.0, 0.0, 0.0, 0.0])
+    graph = cv.diagram(orbit, over="a", within=(-0.5, 0.05), depth=0)
     locus = cv.locus(graph[label], over="b", within=(-0.2, 0.2))
     (point,) = (point for point in locus.points.values() if point.kind == kind)
     assert np.abs(point.value).max() < min(point.error, 1e-9)
@@ -262,9 +245,8 @@ def test_two_things_at_once_beside_a_ring(f, label, kind, p11):
 
 def test_period_doublings_touch_the_folds_of_cycles():
     flow = cv.FlowProblem(fold_and_flip, [1.0, 0, 0, 0], {"a": 0.25, "b": -0.2}, scale=1.0)
-    t = np.linspace(0.0, 2.0 * np.pi, 101)
-    circle = np.sqrt(1.5) * np.column_stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t])
-    graph = cv.diagram(flow.cycle(t, circle), over="a", within=(-0.5, 0.5), depth=0)
+    orbit = cycle(flow, lambda t: [np.sqrt(1.5) * np.cos(t), np.sqrt(1.5) * np.sin(t), 0.0, 0.0])
+    graph = cv.diagram(orbit, over="a", within=(-0.5, 0.5), depth=0)
     assert graph["PD1"].value == pytest.approx(0.04, abs=1e-10)
     for label in ("PD1", "LP1"):
         locus = cv.locus(graph[label], over="b", within=(-0.3, 0.1))
@@ -277,63 +259,33 @@ def test_period_doublings_touch_the_folds_of_cycles():
 
 def zero_hopf(x, p):
     """w' = a + w^2 + |z|^2, z' = (b - w + w^2 + i) z: cycles whose pair has modulus one at b = 0, a < 0."""
-    w, square = x[0], x[1] ** 2 + x[2] ** 2
-    growth = p.b - w + w * w
-    return [p.a + w * w + square, growth * x[1] - x[2], x[1] + growth * x[2]]
+    w = x[0]
+    return [p.a + w * w + x[1] ** 2 + x[2] ** 2, *spiral(x[1:], p.b - w + w * w, 1.0, 0.0)]
 
 
 def double_hopf(x, p):
     """r1' = r1 (a - r1^2 - r2^2 / 2), r2' = r2 (b - 3/2 r1^2 - r2^2): the first cycle, r1^2 = a, loses its stability at b = 3/2 a."""
     one, two = x[0] ** 2 + x[1] ** 2, x[2] ** 2 + x[3] ** 2
-    first, second = p.a - one - 0.5 * two, p.b - 1.5 * one - two
-    return [
-        first * x[0] - x[1],
-        x[0] + first * x[1],
-        second * x[2] - 0.6 * x[3],
-        0.6 * x[2] + second * x[3],
-    ]
+    return [*spiral(x[:2], p.a - 0.5 * two, 1.0), *spiral(x[2:], p.b - 1.5 * one, 0.6)]
 
 
 @pytest.mark.parametrize(
-    ("f", "x0", "cycle", "exact", "kind"),
+    ("f", "states", "sign", "exact", "places"),
     [
-        (zero_hopf, [-0.3, 0, 0], lambda t: [0 * t, 0.3 * np.cos(t), 0.3 * np.sin(t)], 0.0, "zero-hopf"),
-        (
-            double_hopf,
-            [0, 0, 0, 0],
-            lambda t: [0.3 * np.cos(t), 0.3 * np.sin(t), 0 * t, 0 * t],
-            1.5,
-            "double-hopf",
-        ),
+        # beside the cycle w'' = 2 a w: resonances where sqrt(-2 a) is 1/3, 1/4
+        (zero_hopf, lambda t: [0.0, 0.3 * np.cos(t), 0.3 * np.sin(t)], -1.0, 0.0,
+         {"zero-hopf": 0.0, "resonance-1-3": -0.5 / 9, "resonance-1-4": -0.5 / 16}),
+        (double_hopf, lambda t: [0.3 * np.cos(t), 0.3 * np.sin(t), 0.0, 0.0], 1.0, 1.5, {"double-hopf": 0.0}),
     ],
-)
-def test_neimark_sacker_points_of_cycles_begin_at_equilibria(f, x0, cycle, exact, kind):
-    sign = -1.0 if f is zero_hopf else 1.0
-    flow = cv.FlowProblem(f, x0, {"b": 0.05, "a": sign * 0.09}, scale=1.0)
-    t = np.linspace(0.0, 2.0 * np.pi, 101)
-    graph = cv.diagram(flow.cycle(t, np.column_stack(cycle(t))), over="b", within=(-0.1, 0.3), depth=0)
+)  # fmt: skip
+def test_neimark_sacker_points_of_cycles_begin_at_equilibria(f, states, sign, exact, places):
+    flow = cv.FlowProblem(
+        f, [0.15 * (sign - 1.0), *[0] * (len(states(0)) - 1)], {"b": 0.05, "a": 0.09 * sign}, scale=1.0
+    )
+    graph = cv.diagram(cycle(flow, states), over="b", within=(-0.1, 0.3), depth=0)
     assert graph["NS1"].value == pytest.approx(exact * 0.09, abs=1e-10)
     locus = cv.locus(graph["NS1"], over="a", within=(-0.1, 0.2))
     p, q = locus.values.T
     assert np.abs(p - exact * q).max() < 1e-9
-    places = {point.kind: point.value for point in locus.points.values()}
-    assert places.pop(kind) == pytest.approx((0.0, 0.0), abs=1e-8)
-    # beside the cycle at zero-Hopf w'' = 2 a w: resonances where sqrt(-2 a) is 1/3, 1/4
-    resonances = {f"resonance-1-{n}": (0.0, -0.5 / n**2) for n in (3, 4)} if f is zero_hopf else {}
-    assert set(places) == set(resonances)
-    for name, value in resonances.items():
-        assert places[name] == pytest.approx(value, abs=1e-8)
-
-
-def test_a_hopf_point_met_by_cycles_is_followed_as_that_of_the_equilibrium():
-    """FitzHugh and Nagumo: 1 - v^2 = 0.8 eps at rest with w = (v + 0.7) / 0.8 and I = w - v + v^3 / 3."""
-    flow = cv.FlowProblem(
-        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.eps * (x[0] + 0.7 - 0.8 * x[1])],
-        [-1.2, -0.6],
-        {"I": 0.0, "eps": 0.08},
-    )
-    graph = cv.diagram(flow.attractor(I=0.8), over="I", within=(0.0, 1.0), depth=0)
-    locus = cv.locus(graph["HB1"], over="eps", within=(0.04, 0.12))
-    v = -np.sqrt(1.0 - 0.8 * locus.values[:, 1])
-    assert locus.values[:, 0] == pytest.approx((v + 0.7) / 0.8 - v + v**3 / 3.0, abs=1e-9)
-    assert locus.values[[0, -1], 1] == pytest.approx([0.04, 0.12])
+    found = {point.kind: point.value for point in locus.points.values()}
+    assert found == {kind: pytest.approx((0.0, a), abs=1e-8) for kind, a in places.items()}
