@@ -198,6 +198,10 @@ REFUSED = {
     "was made at friction = 0.5, outside of within": lambda: cv.locus(
         response()["LP1"], over="friction", within=(0.6, 0.9)
     ),
+    "within = [0.9, 0.2] is empty or reversed": lambda: cv.chart(
+        response(), over="friction", within=(0.9, 0.2)
+    ),
+    "friction = -1 is out of range": lambda: cv.chart(response(), over="friction", within=(-1.0, 0.9)),
     # what coexists
     "budget = 1.5": lambda: cv.atlas(PAPER, over="amplitude", within=(0.3, 0.8), budget=1.5),
     "values: 9 lies outside": lambda: cv.atlas(PAPER, over="amplitude", within=(0.3, 0.8), values=[9.0]),

@@ -7,13 +7,13 @@ import contvines as cv
 R = -0.1  # of the generalized Henon map
 
 
-def generalized_henon(start=(-0.1, -0.1), al=0.0, be=0.5, units=(1.0, 1.0, 1.0)):
-    """Gonchenko's map x' = y, y' = al - be x - y^2 + R x y, against be; x, be and al in units of their own."""
+def generalized_henon(start=(-0.1, -0.1), al=0.0, be=0.5, units=(1.0, 1.0, 1.0), r=R):
+    """Gonchenko's map x' = y, y' = al - be x - y^2 + r x y, against be; x, be and al in units of their own."""
     U, P, Q = units
 
     def f(x, p):
         y, b, a = x / U, p.be / P, p.al / Q
-        return U * np.array([y[1], a - b * y[0] - y[1] ** 2 + R * y[0] * y[1]])
+        return U * np.array([y[1], a - b * y[0] - y[1] ** 2 + r * y[0] * y[1]])
 
     return cv.MapProblem(f, np.array(start) * U, {"al": al * Q, "be": be * P}, parameter="be")
 

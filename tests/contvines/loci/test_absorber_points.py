@@ -4,26 +4,18 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
 from orbits.attractors import find_attractor
+from tests.machines import ABSORBER
 from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
 
-MACHINE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
 SPANS = {"friction": (0.3, 0.9), "restitution": (0.55, 0.95)}
 
 
-@pytest.fixture(scope="module")
-def graph():
-    return cv.diagram(
-        Absorber(**MACHINE).symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 1.3)
-    )
-
-
 @pytest.fixture(scope="module", params=SPANS)
-def chart(request, graph):
-    return cv.chart(graph, over=request.param, within=SPANS[request.param], regions=False)
+def chart(request, absorber):
+    return cv.chart(absorber, over=request.param, within=SPANS[request.param], regions=False)
 
 
 def test_all_points_in_many_digits(chart):
@@ -64,7 +56,7 @@ def test_what_simulation_finds_on_all_sides_of_the_meetings(chart):
         (graze,) = [line for line in lines if line.kind == "wall-graze"]
 
         def settles(amplitude, value, graze=graze, problem=problem):
-            machine = Absorber(**{**MACHINE, over: value})
+            machine = ABSORBER.changed(**{over: value})
             near = graze.orbit(int(np.argmin(np.abs(graze.branch.values - value))))
             phase, w = near.nodes[near.word.events.index("t")]
             for shift in (0.0, 1e-3, -1e-3):

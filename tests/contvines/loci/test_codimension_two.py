@@ -1,44 +1,51 @@
-"""Points of codimension two of textbook systems, against closed forms and solves in many digits."""
+"""Loci of the Henon map and of its generalization, and the points that a locus and its chart hold, against closed forms."""
 
 import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.loci.systems import generalized_henon, generalized_henon_at, henon
 
 
 def test_henon_loci_are_parabolas():
-    def henon(x, p):
-        return np.array([1 + x[1] - p.a * x[0] ** 2, p.b * x[0]])
-
     problem = cv.MapProblem(henon, [0.6, 0.2], {"a": 0.2, "b": 0.3}, parameter="a")
     graph = cv.diagram(problem, over="a", within=(-0.5, 1.0), depth=1)
-    # fold 4 a = -(1 - b)^2, doubling 4 a = 3 (1 - b)^2, second doubling 4 a = (1 - b)^2 + 4 (1 + b)^2 ... of b = 0.3
+    # fold 4 a = -(1 - b)^2, doubling 4 a = 3 (1 - b)^2, second doubling 4 a = 4 (1 - b)^2 + (1 + b)^2
     closed = {"LP1": lambda b: -((1 - b) ** 2) / 4, "PD1": lambda b: 3 * (1 - b) ** 2 / 4}
     closed["PD2"] = lambda b: (1 - b) ** 2 + (1 + b) ** 2 / 4
     for label, form in closed.items():
-        locus = cv.locus(graph[label], over="b", within=(0.1, 0.6))
-        for a, b in locus.values:
-            assert a == pytest.approx(form(b), abs=1e-12)
+        a, b = cv.locus(graph[label], over="b", within=(0.1, 0.6)).values.T
+        assert a == pytest.approx(form(b), abs=1e-12)
 
 
-def test_first_lyapunov_coefficient_of_the_delayed_logistic_map():
-    from contvines.bifurcation.normal_forms.coefficients import Forms
+def test_a_doubling_that_was_met_from_the_doubled_side():
+    """The 2-cycle was born at 4 a = 3 (1 - b)^2; the diagram begins on it and does not go beyond."""
+    x, y = (-np.roots([0.6, -0.7, 0.49 / 0.6 - 1.0]).real[k] for k in (0, 1))
+    cycle = [[-x, -0.3 * y], [-y, -0.3 * x]]
+    problem = cv.MapProblem(henon, cycle, {"a": 0.6, "b": 0.3}, parameter="a", cycle=2)
+    graph = cv.diagram(problem, within=(0.3, 0.7), depth=0)
+    assert graph["PD1"].multipliers.real.max() == pytest.approx(1.0, abs=1e-6)  # of both iterations
+    a, b = cv.locus(graph["PD1"], over="b", within=(0.0, 0.6)).values.T
+    assert a == pytest.approx(0.75 * (1.0 - b) ** 2, abs=1e-9)
 
-    # delayed logistic map at r = 2: Kuznetsov's textbook example 4.? has theta0 = pi/3 and a negative coefficient;
-    # the value follows from the same formula with B((x, y), (u, v)) = (-2 (x v + y u), 0), C = 0, in exact arithmetic
-    problem = cv.MapProblem(lambda x, p: np.array([p * x[0] * (1 - x[1]), x[0]]), [0.5, 0.5], 2.0)
-    d, _ = Forms(problem, np.array([0.5, 0.5]), 2.0).lyapunov(np.exp(1j * np.pi / 3))
-    m = np.exp(1j * np.pi / 3)
-    A = np.array([[1.0, -1.0], [1.0, 0.0]])
-    q = np.array([m, 1.0]) / np.sqrt(2.0)
-    values, vectors = np.linalg.eig(A.T)
-    p = vectors[:, np.argmin(abs(values - m.conj()))]
-    p = p / np.vdot(p, q).conj()
 
-    def B(a, b):
-        return np.array([-2.0 * (a[0] * b[1] + a[1] * b[0]), 0.0])
-
-    h20 = np.linalg.solve(m**2 * np.eye(2) - A, B(q, q))
-    h11 = np.linalg.solve(np.eye(2) - A, B(q, q.conj()))
-    exact = 0.5 * (m.conj() * np.vdot(p, 2 * B(q, h11) + B(q.conj(), h20))).real
-    assert d.value == pytest.approx(exact, abs=1e-10)
+@pytest.mark.slow
+@pytest.mark.parametrize("r", [0.0, -0.1])
+def test_strong_resonances_on_a_locus_and_its_chart(tmp_path, r):
+    graph = cv.diagram(generalized_henon((0.6, 0.6), 1.0, r=r), over="be", within=(0.5, 1.5), depth=0)
+    chart = cv.chart(graph, over="al", within=(-2.0, 4.0), depth=0, regions=False)
+    chart.save(tmp_path / "chart.vines")
+    for one in (chart, cv.load(tmp_path / "chart.vines")):
+        assert one.points == {
+            label: point for locus in one.loci.values() for label, point in locus.points.items()
+        }
+    (locus,) = (locus for locus in chart.loci.values() if locus.kind == "neimark-sacker")
+    traces = {"R11": 2.0, "R21": -2.0, "R31": -1.0, "R41": 0.0}
+    assert set(locus.points) == set(
+        traces
+    )  # at r = 0 the map preserves areas all along: it has no Chenciner point
+    for label, trace in traces.items():
+        x, be, al = generalized_henon_at(trace, r)
+        point = locus.points[label]
+        assert point.value == pytest.approx((be, al), abs=1e-9) and point.u == pytest.approx([x, x], abs=1e-8)
+        assert locus.label in point.on
