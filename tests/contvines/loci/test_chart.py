@@ -9,7 +9,7 @@ import pytest
 
 import contvines as cv
 from contvines.loci.table import chart_summary, table
-from tests.contvines.studies import PAPER_MACHINE
+from tests.contvines.studies import PAPER
 
 
 @pytest.fixture(scope="module")
@@ -89,11 +89,8 @@ def test_a_chart_is_kept_in_a_file_and_has_orbits_by_label(chart, run):
 
 @pytest.mark.slow
 def test_command_line(tmp_path, run):
-    (tmp_path / "study.toml").write_text(
-        PAPER_MACHINE + '[start]\nword = "LR"\nperiods = 1\namplitude = 0.55\n'
-        '[continue]\nparameter = "amplitude"\nwithin = [0.2, 0.8]\ndepth = 0\n'
-        '[chart]\nparameter = "friction"\nwithin = [0.4, 0.6]\n'
-    )
+    chart = '[chart]\nparameter = "friction"\nwithin = [0.4, 0.6]\n'
+    (tmp_path / "study.toml").write_text(PAPER.replace("1.2]", "0.8]") + chart)
     assert run("chart", "study.toml", "--plot", "chart.png")[0] == 0
     assert (tmp_path / "chart.png").exists()
     file = cv.load("study-chart.vines")
