@@ -1,4 +1,4 @@
-"""The data of a cycle's equations and the arrays to work in, as the kernels are handed them; each is one struct of the native core.
+"""The data of a cycle's equations and the arrays to work in, as the kernels are handed them, each one struct of the native core; numbers of formulas.
 
 The native core (native/cycles.hpp) sees the same memory as the reference.
 """
@@ -25,7 +25,7 @@ class CycleData(NamedTuple):
     params: np.ndarray
     """The machine's numbers, shape (P,)."""
     path: np.ndarray
-    """How they follow the parameter that varies, shape (2, P); see `orbits.machines.path`."""
+    """How they follow the parameter that varies, shape (2, P); see `orbits.machines.parameters`."""
     twist: float
     """-1 where the second half of the cycle mirrors the first, else 1."""
     shift: float
@@ -156,3 +156,16 @@ def jacobian(data: CycleData, work: Workspace) -> np.ndarray:
     whole[-1, :, 0, 0] += D[-1, :, 0]
     whole[-1, :, 0, 1:] += twist * D[-1, :, 1:]
     return whole.reshape(length * n, length * n)
+
+
+Reals = float | np.ndarray
+"""A number, or an array of them: the shapes of what goes in decide."""
+
+ROUNDOFF = 2.3e-16
+"""Just above the distance of neighbouring floats, relative: what is smaller than this share of a number does not change it."""
+SMALLEST = 1e-300
+"""Divisors are at least this, so that no quotient of ordinary numbers is undefined; what is smaller is zero."""
+UNBOUNDED = 1e15
+"""Stands for a multiplier that grows without bound towards a border: larger than any that double precision can tell from infinity."""
+COMPLEX_STEP = 1e-200
+"""Its square is zero, so that real parts of complex steps are those of real arithmetic; it changes no bit of an ordinary number."""

@@ -11,18 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.borders.crossing import cross
-from orbits.borders.dead_ends import dead_end
-from orbits.borders.distance import INSTANTS, distance
-from orbits.cycles.cycle import canonical, size_of_one
-from orbits.flows.catalogue import flow_of
+from orbits.borders import cross, dead_end
+from orbits.cycle import canonical, size_of_one
+from orbits.flows import flow_of, machine_of
 from orbits.flows.equations import PLAIN, CycleKernels
-from orbits.machines.catalogue import build
-from orbits.machines.path import along
-from orbits.motions import Motions
-from orbits.orbit import Orbit
-from orbits.words import Word
-from orbits.words.margins import border_kind
+from orbits.machines.parameters import along
+from orbits.orbit import INSTANTS, Orbit, distance
+from orbits.protocol import Motions
+from orbits.words import Word, border_kind
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -384,7 +380,7 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
         if model is None:
             return None
     else:
-        model = build(settings)
+        model = machine_of(settings)
     return OrbitProblem(
         model,
         Word.described(description, getattr(model, "alphabet", None)),

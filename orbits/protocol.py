@@ -1,17 +1,25 @@
-"""What an orbit problem hands to a continuation code: symmetries, larger problems, seeds of branches."""
+"""What an orbit problem hands to a continuation code: symmetries, larger problems, seeds of branches, and what it says of other motions.
+
+The same for every machine: closed form or declared, forced or self-excited.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from contvines.shared.motions import BAND
 from orbits.flows.protocol import Equations, Flow
 from orbits.orbit import Orbit
+from orbits.words import Word
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from orbits.simulation.runs import Section
     from orbits.words import Word
 
 
@@ -103,3 +111,140 @@ class Seed(NamedTuple):
     kind: str
     note: str
     persistence: bool
+
+
+class Motions(CycleProblem):
+    """Answers of the problem of a word about other motions of its machine."""
+
+    # ------------------------------------------------------------------ images, larger and smaller problems
+    @property
+    def symmetries(self) -> tuple[Symmetry, ...]:
+        """Images of a solution of the full word: the mirror some places on, and a doubled word's shift by its half."""
+        return self._images
+
+    @cached_property
+    def _images(self) -> tuple[Symmetry, ...]:
+        if self.symmetric or not self.word.modes:
+            return ()
+        found = []
+        for places in self._mirror_places() if self.mirrored else ():
+            found.append(self._mirrored_on(places))
+        repetitions = self.word.repetitions if len(self.word) else self.length
+        if repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
+            periods = self.periods // 2 if self.forced else 1
+            root = self._root(self.word.head(len(self.word) // 2), periods, symmetric=False)
+            found.append(Symmetry("period-doubling", lambda u: self._rotated(u, self.length // 2, 1.0), root))
+        return tuple(found)
+
+    def _root(
+        self, word: Word, periods: int, symmetric: bool
+    ) -> Callable[[np.ndarray], tuple[CycleProblem, np.ndarray]]:
+        """Takes a solution that is its own image to the problem of a shorter word, made when it is first asked for, and there."""
+        made = cache(lambda: self.sibling(word, periods, symmetric))
+        return lambda u: (made(), made().reduce(self.expand(u)))
+
+    def _mirrored_on(self, places: int) -> Symmetry:
+        periods = 2 * self.periods * places // self.length if self.forced else 1
+        root = self._root(self.word.head(2 * places), periods, symmetric=True)
+        return Symmetry(
+            "symmetry-breaking", lambda u: self._rotated(u, places, -1.0), root, offset=self.image_offset
+        )
+
+    def _mirror_places(self) -> list[int]:
+        """Rotations that make the word its mirror image, an odd number of half forcing periods on, the least first.
+
+        A word that repeats a shorter one has several: its motions may be symmetric as a whole, or repeat a symmetric motion.
+        """
+        mirror, n = self.word.mirror(), self.length
+        found = []
+        for places in range(1, n // 2 + 1):
+            if n % (2 * places):
+                continue
+            times = n // (2 * places)
+            if self.forced and (self.periods % times or (self.periods // times) % 2 == 0):
+                continue
+            if self.word.rotate(places) == mirror:
+                found.append(places)
+        return found
+
+    def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
+        """Nodes some places on, at the same phase again, their states times `sign`."""
+        nodes = self.expand(u)
+        image = np.concatenate([nodes[places:], nodes[:places]])
+        image[:, 1:] *= sign
+        if self.forced:
+            turn = self.shift * places / self.length
+            image[: self.length - places, 0] -= turn
+            image[self.length - places :, 0] += self.shift - turn
+        return self.reduce(image)
+
+    def offspring(
+        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
+    ) -> list[Embedding]:
+        """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
+        along = np.asarray(tangent[:-1])
+        if kind == "symmetry-breaking" and self.symmetric:
+            full = self.sibling(self.word, self.periods, symmetric=False)
+            image = -along.reshape(self.length, -1)
+            image[:, 0] *= -1.0
+            direction = np.concatenate([along, image.ravel(), tangent[-1:]])
+            return [Embedding(full, full.reduce(self.expand(u, p)), direction, kind)]
+        if kind == "period-doubling" and not self.symmetric and self.word.modes:
+            periods = 2 * self.periods if self.forced else 1
+            double = self.sibling(self.word.double(), periods, symmetric=False)
+            nodes = self.expand(u, p)
+            second = nodes.copy()
+            second[:, 0] += self.shift
+            direction = np.concatenate([along, along, tangent[-1:]])
+            return [Embedding(double, double.reduce(np.concatenate([nodes, second])), direction, kind)]
+        if kind == "branch-point":
+            return [Embedding(self, np.array(u), np.array(tangent), kind)]
+        return []
+
+    # ------------------------------------------------------------------ by simulation
+    def simulated_attractors(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
+        """What the machine settles on at a parameter value, simulated from rest and from random starts.
+
+        Returns
+        -------
+        list of dict
+            "word" (None where there is none), "periods" and "kind" of each motion and "share" of the starts that lead to it, sorted; of
+            one that does not recur "modulation" and its band, too (see `contvines.shared.motions`), where it has one.
+        """
+        from orbits.attractors.attractor import modulated
+        from orbits.attractors.search import met
+
+        found: dict[tuple[str, int, str], dict[str, Any]] = {}
+        motions = list(met(self.model, self.values(p), starts, 7, max_period=12, patience=1))
+        for motion, measures in motions:
+            text = None if motion.word is None else motion.word.canonical().spelled()
+            key = (text or "", int(motion.periods), motion.kind)
+            if key not in found:
+                found[key] = {"word": text, "periods": key[1], "kind": motion.kind, "share": 0.0}
+                if modulation := modulated(motion, measures):
+                    found[key] |= {"modulation": modulation, **{name: measures[name] for name in BAND}}
+            found[key]["share"] += 1
+        for one in found.values():
+            one["share"] /= len(motions)
+        return [found[key] for key in sorted(found)]
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable motion as `simulated_attractors` lists it."""
+        kind = self.flow.kind(self.orbit(u, p))
+        return {"word": self.word.canonical().spelled(), "periods": self.periods, "kind": kind}
+
+    def section(self, p: float) -> Section:
+        """Its motions by simulation, once per period of the cycle.
+
+        Raises
+        ------
+        ValueError
+            For the absorber at rest, which has no event to begin with.
+        """
+        if not len(self.equations.unit):
+            raise ValueError("the absorber that never slides has no section")
+        from orbits.flows import simulator_of
+        from orbits.simulation.runs import Section
+
+        simulator, unit = simulator_of(self.model, self.values(p)), self.equations.unit[0]
+        return Section(simulator, self.word, self.periods, unit, self.model.place_of(self.parameter))

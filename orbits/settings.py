@@ -1,7 +1,7 @@
 """Tolerances of the machines and of their motions, in groups by what they decide.
 
 Nobody has to set them: they follow from double precision and from lengths and speeds in a machine's own units, in which all of them are
-counted. What users choose are the settings of a continuation (`contvines.Settings`). Facts of floating point: `orbits.numbers`; limits of
+counted. What users choose are the settings of a continuation (`contvines.Settings`). Facts of floating point: `orbits.arguments`; limits of
 parameters: the machines' tables.
 """
 

@@ -230,7 +230,7 @@ def _from_impacts(
 def _from_sweep(
     study: Study, model: Model, path: Path, measure: str | None, known: dict[str, Any]
 ) -> tuple[Calibration, dict[str, Any]]:
-    from orbits.attractors.observation import measure_names
+    from orbits.attractors.attractor import measure_names
     from orbits.design.calibration import from_sweep
 
     from ..plots.style import axis_label

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+from orbits.flows import machine_of
 from orbits.machines.base import Model
-from orbits.machines.catalogue import build
 from orbits.machines.names import NAMES, PAGES, STRUCTURE, model_class
 from orbits.machines.parameters import CONTACT_TIME
 from orbits.words import Word
@@ -66,7 +66,7 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     loose = {key: value for key, value in parameters.items() if key not in own}
     given = {key: value for key, value in parameters.items() if key in own}
     try:
-        made = build({"name": name, **given, **values_of(file, [CONTACT_TIME.name])})
+        made = machine_of({"name": name, **given, **values_of(file, [CONTACT_TIME.name])})
     except ValueError as error:
         raise StudyError(f"[model] {error}") from error
     return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=made, loose=loose))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from orbits.design.references import KINDS
-from orbits.flows.catalogue import flow_of
+from orbits.flows import flow_of
 from orbits.orbit import Orbit
 
 from ..graph.stretches import highest, inside

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import contvines
-from orbits.flows.catalogue import flow_of
+from orbits.flows import flow_of
 from orbits.machines.measures import way_out
 
 from ..shared.near_names import did_you_mean

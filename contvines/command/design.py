@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from orbits.numbers import Reals
+    from orbits.arguments import Reals
 
 DAMPING = 0.9  # the reduced model has none; the coupled model's default
 HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale

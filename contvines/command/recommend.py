@@ -132,7 +132,7 @@ def kept(place: Path) -> dict[str, Any]:
 
 
 def _target(text: str, study: Study) -> float:
-    from orbits.flows.catalogue import flow_of
+    from orbits.flows import flow_of
 
     from .options import amount
 

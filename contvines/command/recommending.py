@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from orbits.design.references import KINDS
-from orbits.flows.catalogue import flow_of
+from orbits.flows import flow_of
 
 from ..shared.files import digest_of
 from ..shared.motions import BAND

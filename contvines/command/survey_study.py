@@ -193,7 +193,7 @@ def ways_of(study: Study) -> dict[str, Any]:
 
 def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
     """Units of parameters and outcomes."""
-    from orbits.flows.catalogue import flow_of
+    from orbits.flows import flow_of
 
     if not isinstance(model, Varying) or not model.units:
         return {}

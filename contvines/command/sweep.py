@@ -169,7 +169,7 @@ def graph_beneath(path: Path, study: Study) -> Graph:
 
 def _graph_machine(graph: Graph) -> dict[str, Any]:
     """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
-    from orbits.machines.catalogue import build
+    from orbits.flows import machine_of
     from orbits.machines.names import NAMES
 
     known = dict(graph.model)
@@ -179,7 +179,7 @@ def _graph_machine(graph: Graph) -> dict[str, Any]:
     params = next((params for params in every if params is not None), None)
     if params is None:
         return known
-    return {"name": known["name"], **dict(zip(build(known).parameter_names, params))}
+    return {"name": known["name"], **dict(zip(machine_of(known).parameter_names, params))}
 
 
 def _study_machine(study: Study) -> dict[str, Any]:
@@ -209,7 +209,7 @@ def picture(
     rows: list[Kept], study: Study, graph: Graph | None, size: tuple[float, float] | None = None
 ) -> Figure:
     """The attractors of a sweep as dots, over a graph if there is one."""
-    from orbits.flows.catalogue import flow_of
+    from orbits.flows import flow_of
 
     from ..plots.sweep import plot_sweep
 

@@ -89,7 +89,7 @@ def rows_as_json(rows: list[Kept], study: Study) -> dict[str, Any]:
 
 def measured_names(study: Study) -> list[str]:
     """The measures of the rows, in the order of the CSV."""
-    from orbits.attractors.observation import measure_names
+    from orbits.attractors.attractor import measure_names
 
     return [name for name in measure_names(machine(study)) if name not in FIRST]
 

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors.attractor import Attractor
-from orbits.attractors.observation import described, lasting
-from orbits.contacts.letters import SLIP
-from orbits.flows.catalogue import simulator_of
+from orbits.attractors.attractor import Attractor, described, lasting
+from orbits.contacts import SLIP
+from orbits.flows import simulator_of
 from orbits.flows.equations import solved_nodes
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.flows.trajectory import TWO_PI, Trajectory
@@ -115,7 +114,7 @@ def different_attractors(
 def attracted(
     simulator: Simulator, transient: float, max_period: int, tolerance: float, patience: int
 ) -> Attractor:
-    """What the motion of a simulator leads to: simulated until it returns to itself; see `orbits.attractors.observation.lasting` for the rest.
+    """What the motion of a simulator leads to: simulated until it returns to itself; see `orbits.attractors.attractor.lasting` for the rest.
 
     Parameters
     ----------

@@ -11,10 +11,9 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
-from orbits.attractors.attractor import Attractor
-from orbits.attractors.observation import described, modulated
+from orbits.attractors.attractor import Attractor, described, modulated
 from orbits.attractors.search import find_attractor, goes_on
-from orbits.flows.catalogue import flow_of, simulator_of
+from orbits.flows import flow_of, simulator_of
 from orbits.flows.protocol import SimulationError
 from orbits.settings import SIMULATING
 
@@ -39,7 +38,7 @@ class SweepRow:
     periods, impacts : int
         k and l of the cycle; 0 where nothing recurs.
     measures : dict
-        Numbers by name, the same names in every row; see `orbits.attractors.observation.measure_names`.
+        Numbers by name, the same names in every row; see `orbits.attractors.attractor.measure_names`.
     detail : Attractor
         The attractor itself, with its nodes and the state reached.
     modulation : str

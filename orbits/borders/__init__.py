@@ -1,6 +1,405 @@
 """Borders: where a motion stops being possible, and the motion that takes its place.
 
-`crossing` finds the branches on the other side, `rewriting` says how the word changes, `neighbours` solves for the orbit next to
-the border, with what vanishes there held at a size, `rounds` knows what changes in some rounds only, `distance` compares motions whatever their
-words, `dead_ends` says why nothing was found.
+`cross` finds the branches on the other side, or says why there is none. The local rules of `rewriting` propose the word there; where they do not, the
+simulator writes it. A proposal counts only if its maps have a real solution next to the border (`neighbours`, with what vanishes there held at a size)
+and the simulator, which knows no word, follows it. `rounds` knows what changes in some rounds only. The new word begins where the old one
+began (`read_alike`): measures taken at the first impact, and words in tables, then go on without a jump along a chain of branches.
 """
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Iterator
+from itertools import chain, product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orbits.attractors.search import goes_on
+from orbits.borders.neighbours import Grown, followed, margins_of, parameter_unit, placed, proposals
+from orbits.borders.rounds import escapes
+from orbits.contacts import HIT, SLIP, STICK, TURN
+from orbits.cycle import canonical, size_of_one
+from orbits.flows import simulator_of
+from orbits.flows.equations import newton, solved_at
+from orbits.flows.protocol import SimulationError
+from orbits.machines.base import Model
+from orbits.orbit import CLOSE, REAL, Orbit, distance, tends
+from orbits.protocol import CycleProblem, Seed
+from orbits.settings import BORDERING, EVENTS, SOLVING
+from orbits.starts.find import StartError, find, polish
+from orbits.words import approaches_of, border_kind, place_of
+
+if TYPE_CHECKING:
+    from orbits.protocol import BorderPoint
+
+
+LONG_WORD = 60  # letters of a word that a line has room for
+NEARER = (
+    0.3,
+    0.1,
+    0.03,
+    0.01,
+)  # parts of the way from the border at which a simulated orbit is solved for again
+
+
+def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list[Seed]:
+    """Seeds of the branches on the other side of a border.
+
+    Parameters
+    ----------
+    problem : CycleProblem
+    point : special point
+        With `u`, `value`, `tangent` and `margin_index`.
+    every : bool
+        Also the orbits of less symmetry or longer period that leave at the border itself, where there are others.
+
+    Returns
+    -------
+    list of Seed
+        Usually one; empty if neither the local rules nor the simulator find an orbit there.
+    """
+    if not problem.word.modes:
+        return from_rest(problem, point)
+    u, p = np.asarray(point.u, dtype=float), float(point.value)
+    rest = to_rest(problem, point)
+    before = problem.orbit(u, p)
+    if rest or piled_up(before, approaches_of(problem.word, margins_of(problem, u, p))):
+        return rest
+    assert point.margin_index is not None  # it lies at a border
+    index, tangent_here = point.margin_index, np.asarray(point.tangent, dtype=float)
+    nearby = _real_part(problem, u, p, tangent_here, index)
+    old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
+    seeds = []
+    # the simulator is asked only where no proposal stands
+    border = placed(problem, u, p, index)
+    rooms = chain.from_iterable(map(proposals, border.with_room()))
+    for found, note in chain(proposals(border), rooms, _simulated(problem, u, p)):
+        orbit = found.orbit()
+        if not followed(orbit):
+            continue
+        simplest, persistence = _simplest(found, orbit), bool(np.sign(found.p - p) != old_side)
+        kind = "persistence" if persistence else "nonsmooth fold"
+        seeds.append(Seed(*simplest, "border", f"{note}: {kind}", persistence))
+        if simplest is not found:
+            seeds.extend(_onwards(simplest.problem, simplest.u, p))
+        break
+    if (every or not seeds) and len(problem.word):
+        seeds += escapes(border, [placed(problem, *near, index) for near in nearby if near is not None])
+    return [_with_word(read_alike(seed, before)) for seed in seeds]
+
+
+def _with_word(seed: Seed) -> Seed:
+    """The seed with its word in the note; of a word too long for a line, the number of its events."""
+    text = seed.problem.spelling or "free of events"
+    if len(text) > LONG_WORD:
+        text = f"one of {len(seed.problem.word)} events"
+    return seed._replace(note=f"{seed.note}, the word becomes {text}")
+
+
+def _simplest(found: Grown, orbit: Orbit) -> Grown:
+    """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
+    problem, root = found.problem, orbit.root()
+    smallest = problem.sibling(root.word, root.periods, root.symmetric)
+    if smallest.periods == problem.periods and smallest.symmetric == problem.symmetric:
+        return found
+    return Grown(smallest, smallest.reduce(root.nodes), found.p, None)
+
+
+def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
+    """Where the simpler orbits, on whose border a branch of less symmetry ends, go on themselves."""
+    at_border, residual = solved_at(problem.equations, u, p)
+    if not residual < SOLVING.residual:
+        return
+    index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
+    for found, note in proposals(placed(problem, at_border, p, index)):
+        if followed(found.orbit()):
+            yield Seed(*found, "border", f"{note}: the branches meet at the border", False)
+            return
+
+
+def _real_part(
+    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int
+) -> list[tuple[np.ndarray, float] | None]:
+    """Solutions (u, p) in the branch's real part, close to the border at each of the distances `BORDERING.beside`; None where there is none.
+
+    Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
+    border, so its tangent does not tell.
+    """
+    tangent = tangent / float(np.abs(tangent).max())
+    sides, found = (1.0, -1.0), []
+    for length in BORDERING.beside:
+        best = None
+        for side in sides:
+            ahead, q = u + side * length * tangent[:-1], p + side * length * float(tangent[-1])
+            there, q, residual, _ = newton(problem.equations, ahead, q, tangent)
+            if residual < SOLVING.residual:
+                margin = float(margins_of(problem, there, q)[index])
+                if best is None or margin > best[0]:
+                    best = margin, side, (there, q)
+        found.append(best and best[2])
+        sides = sides if best is None else (best[1],)
+    return found
+
+
+def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple[Grown, str]]:
+    """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
+    # import of own names
+
+    orbit = problem.orbit(u, p)
+    here = _key(orbit)
+    for away, side in product(BORDERING.away, (1.0, -1.0)):
+        q = p + side * away * parameter_unit(problem, p)
+        found, _ = settled(orbit, problem.values(q))
+        if found is None or (problem.forced and found.periods % problem.periods) or _key(found) == here:
+            continue
+        if not _loses_alike(orbit, found) or distance(orbit, found) > CLOSE:
+            continue
+        other = problem.sibling(found.word, found.periods, found.symmetric)
+        v = other.reduce(found.nodes)
+        nearer = _nearer(other, v, q, p)
+        if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
+            continue  # an attractor somewhere else: nothing joins it to the border
+        yield Grown(other, v, q, None), "the simulator goes on"
+
+
+def _key(orbit: Orbit) -> Hashable:
+    same = size_of_one(orbit.nodes)
+    return canonical(orbit.word, orbit.periods, orbit.nodes, forced=orbit.forced, same=same)[0]
+
+
+def _loses_alike(one: Orbit, other: Orbit) -> bool:
+    """Whether two motions lose as much by friction, where the machine knows what that is."""
+    if "friction_loss" not in one.flow.measure_names(one.model):
+        return True
+    losses = [orbit.measure("friction_loss") / orbit.periods for orbit in (one, other)]
+    energy = one.model.gauge("energy", other.params) * math.prod(one.model.natural_units(one.params)) ** 2
+    return bool(abs(losses[0] - losses[1]) <= 0.05 * energy)
+
+
+def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit | None:
+    """The orbit at q, followed towards the border at p as far as it can be solved for; None if it stops being real on the way."""
+    found = problem.orbit(u, q)
+    for part in NEARER:
+        there = p + part * (q - p)
+        u, residual = solved_at(problem.equations, u, there)
+        if not residual < SOLVING.residual:
+            break
+        if margins_of(problem, u, there).min() < REAL:
+            return None
+        found = problem.orbit(u, there)
+    return found
+
+
+def read_alike(seed: Seed, before: Orbit) -> Seed:
+    """The seed, its orbit read from the event that corresponds to the first event of the orbit before the border."""
+    if not len(seed.problem.word) or not len(before.word):
+        return seed
+    orbit = seed.problem.orbit(seed.u, seed.p)
+    places = _first_event(orbit, before)
+    if places == 0:
+        return seed
+    turned = orbit.rotate(places)
+    problem = seed.problem.sibling(turned.word, turned.periods, seed.problem.symmetric, seed.problem.params)
+    nodes = turned.nodes.copy()
+    if orbit.forced:
+        nodes[:, 0] -= 2.0 * np.pi * round((nodes[0, 0] - before.nodes[0, 0]) / (2.0 * np.pi))
+    tangent = seed.tangent
+    if tangent is not None:
+        along = np.roll(whole_direction(seed.problem, tangent[:-1]), -places, axis=0)[: problem.length]
+        tangent = np.append(along.ravel(), tangent[-1])
+    return seed._replace(problem=problem, u=problem.reduce(nodes), tangent=tangent)
+
+
+def whole_direction(problem: CycleProblem, direction: np.ndarray) -> np.ndarray:
+    """A direction of the unknowns as one of the nodes of the whole cycle."""
+    along = np.asarray(direction).reshape(problem.length, -1)
+    if not problem.symmetric:
+        return along
+    image = -along
+    image[:, 0] = along[:, 0]
+    return np.concatenate([along, image])
+
+
+def _first_event(orbit: Orbit, before: Orbit) -> int:
+    """The event at the phase of the old first one (of a self-excited motion: with its states), of its kind if there is one; never a slip."""
+    word = orbit.word
+    kinds = [word.letter(i).kind for i in range(len(word))]
+    choices = [i for i, letter in enumerate(word.events) if letter == before.word.events[0]]
+    choices = choices or [i for i, kind in enumerate(kinds) if kind == HIT]
+    choices = choices or [i for i, kind in enumerate(kinds) if kind != SLIP]
+    if not orbit.forced:
+        apart = np.abs(orbit.nodes[:, 1:] - before.nodes[0, 1:]).max(axis=1)
+        return min(choices, key=lambda i: apart[i])
+    whole = 2.0 * np.pi * before.periods
+    phases, first = orbit.nodes[:, 0].tolist(), float(before.nodes[0, 0])
+    return min(choices, key=lambda i: abs((phases[i] - first + 0.5 * whole) % whole - 0.5 * whole))
+
+
+def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
+    """The stick-slip motion just beyond the slip of a stuck one: closed form, or what the simulator finds."""
+    p = float(point.value)
+    for away in BORDERING.slipping:
+        for side in (1.0, -1.0):
+            q = p + side * away * parameter_unit(problem, p)
+            if Orbit.at_rest(problem.model, problem.values(q)).real:
+                continue
+            values = problem.model.named(problem.values(q))
+            try:
+                orbit = find(problem.model, "ss", 1, None, values)
+            except (StartError, ValueError):
+                continue
+            other = problem.sibling(orbit.word, orbit.periods, orbit.symmetric)
+            u, q = other.reduce(orbit.nodes), other.value(orbit.params)
+            length = orbit.model.natural_units(orbit.params)[0]
+            if np.ptp(orbit.sample()["w"]) < CLOSE * length and followed(orbit):
+                sign = np.zeros(other.dimension + 1)
+                sign[-1] = side
+                note = "the stuck absorber begins to slip: persistence, the word becomes ss"
+                return [Seed(other, u, q, sign, "border", note, True)]
+    return []
+
+
+def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
+    """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
+    if not problem.model.in_cavity or sorted(problem.word.events) != ["s", "s", "u", "u"]:
+        return []
+    p = float(point.value)
+    unit = parameter_unit(problem, p)
+    for side in (-1.0, 1.0):
+        q = p + side * BORDERING.away[-1] * unit
+        orbit = Orbit.at_rest(problem.model, problem.values(q))
+        beyond = Orbit.at_rest(problem.model, problem.values(p - side * BORDERING.away[-1] * unit))
+        if orbit.margin > 0.0 >= beyond.margin:  # next to nothing reads as zero
+            other = problem.sibling(orbit.word, 1, orbit.symmetric)
+            direction = np.zeros(other.dimension + 1)
+            direction[-1] = side
+            note = "the slips vanish: persistence, the absorber is stuck"
+            return [Seed(other, other.reduce(orbit.nodes), q, direction, "border", note, True)]
+    return []
+
+
+UNKNOWN = (
+    "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"
+)
+ENDS = {
+    "chatter": "goes to a motion on which impacts pile up",
+    "rest": "comes to rest",
+    "stuck": "comes to rest",
+    "aperiodic": "goes to a motion without a period",
+}
+"""What simulation does where it finds no orbit."""
+TRANSIENT = 60  # forcing periods, or events of a self-excited motion
+
+
+def dead_end(problem: CycleProblem, point: BorderPoint) -> str:
+    """A sentence that says why no motion was found on the other side of a border."""
+    u, p = np.asarray(point.u, dtype=float), float(point.value)
+    orbit = problem.orbit(u, p)
+    if not orbit.word.modes:
+        if _gives_way_one_way(orbit):
+            return "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
+        return UNKNOWN.format(contact="the contacts")
+    index = point.margin_index
+    contact = "the contacts" if index is None else _contact(orbit, int(index))
+    if index is not None and border_kind(orbit.word, int(index)) == "vanishing-event":
+        return (
+            f"impacts on {contact} fall together: beyond the border infinitely many pile up, which simulation follows to their end "
+            "and no finite word describes"
+        )
+    near = _nearly_vanishing(orbit)
+    return near or "; ".join([UNKNOWN.format(contact=contact), *_goes_to(problem, orbit, p)])
+
+
+def _contact(orbit: Orbit, index: int) -> str:
+    """The contact that a margin watches, in words."""
+    word = orbit.word
+    place, watched = place_of(word, index)
+    if watched < 0:
+        watched = word.letter(place).contact if len(word) else 0
+    return word.alphabet.contacts[watched].described
+
+
+def _nearly_vanishing(orbit: Orbit) -> str:
+    """What else is about to vanish beside that which does; empty where nothing is."""
+    margins, word = orbit.relative_margins, orbit.word
+    speeds = [m.value for m in margins if m.kind == "approach" and BORDERING.shown < m.value < BORDERING.slow]
+    turns = [k for k in range(len(word)) if word.letter(k).kind == TURN]
+    gaps = [
+        m.value
+        for m in margins
+        if m.kind == "wall" and m.segment in turns and BORDERING.shown < m.value < BORDERING.slow
+    ]
+    if speeds:
+        return (
+            f"impacts pile up at a wall: of those before it the slowest has {min(speeds):.1e} of the machine's own speed, and a further "
+            "one cannot be distinguished from rest"
+        )
+    if gaps:
+        return (
+            f"turns pile up at a wall: of those before it the nearest keeps {min(gaps):.1e} of the machine's own length, and a further "
+            "one cannot be distinguished from contact"
+        )
+    seen = {(m.kind, m.segment): m.value for m in margins}
+    for place in range(len(word)):
+        pair = seen.get(("duration", place), np.inf), seen.get(("stick", place), np.inf)
+        if word.letter(place).kind == STICK and min(pair) > BORDERING.shown and max(pair) < BORDERING.slow:
+            return (
+                f"a stick that lasts {pair[0]:.1e} of the machine's own time, with {pair[1]:.1e} of its friction in reserve, is about to "
+                "vanish as well: motions between the two borders cannot be resolved"
+            )
+    return ""
+
+
+def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
+    """Where simulation from the border orbit goes, a little to both sides of it."""
+    # import of own names
+
+    told = {}
+    for side, name in ((1.0, "above"), (-1.0, "below")):
+        found, kind = settled(
+            orbit, problem.values(p + side * BORDERING.away[0] * parameter_unit(problem, p))
+        )
+        if found is None:
+            told[name] = ENDS.get(kind, kind)
+        elif found.word.canonical().events == orbit.word.canonical().events:
+            told[name] = "stays with this word"
+        else:
+            told[name] = f"settles on {found.spelling or 'a motion without events'} elsewhere"
+    if told["above"] == told["below"]:
+        return [f"simulation {told['above']} on either side"]
+    return [f"simulation {what} just {name} it" for name, what in told.items()]
+
+
+def piled_up(orbit: Orbit, approaches: np.ndarray) -> bool:
+    """Whether a border orbit with these speeds of impacts has one that is too slow, once the wall has sent it back, to see what the next ones do."""
+    hits = [place for place in range(len(orbit.word)) if orbit.word.letter(place).kind == HIT]
+    return any(
+        speed > BORDERING.shown and orbit.flow.restitution(orbit, place) * speed < BORDERING.unresolved
+        for speed, place in zip(approaches.tolist(), hits)
+    )
+
+
+def _gives_way_one_way(orbit: Orbit) -> bool:
+    """Whether friction and slope hold the absorber better one way than the other."""
+    model = orbit.model
+    if not isinstance(model, Model):
+        return False
+    left, right = model.rest.reserves(orbit.params)
+    return bool(abs(left - right) > EVENTS.zero * model.friction_acceleration(orbit.params))
+
+
+def settled(orbit: Orbit, params: np.ndarray) -> tuple[Orbit | None, str]:
+    """The periodic motion that simulation reaches from an orbit's first event with other parameters; else None and the kind of motion, or why not."""
+    word = orbit.word
+    place = next((i for i in range(len(word)) if word.letter(i).kind != SLIP), 0)
+    most = max(2 * orbit.periods, 4)
+    simulator = simulator_of(orbit.model, params)
+    try:
+        simulator.begin(word.rotate(place), orbit.nodes[place])
+        found = goes_on(simulator, TRANSIENT, most)
+    except SimulationError as error:
+        return None, f"is refused ({error})"
+    if found.word is None or not len(found.found.nodes):
+        return None, found.kind
+    return polish(found.found), found.kind

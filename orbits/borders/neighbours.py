@@ -9,11 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.distance import SHRINKS, gap, tends
 from orbits.borders.rewriting import Edit, durations_after, edits_at, rewritten
-from orbits.contacts.letters import HIT, SLIP, STICK, Change, Grows, What
+from orbits.contacts import HIT, SLIP, STICK, Change, Grows, What
 from orbits.flows.equations import newton
-from orbits.orbit import REAL, Orbit, examined
+from orbits.orbit import REAL, SHRINKS, Orbit, examined, gap, tends
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING, REPLAYING, SOLVING
 

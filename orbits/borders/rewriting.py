@@ -10,13 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, STICK, SWITCH, Change, Grows, Site, Spot, What
+from orbits.contacts import HIT, STICK, SWITCH, Change, Grows, Site, Spot, What
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING
+from orbits.words import Word, place_of
 from orbits.words.alphabet import Watch
-from orbits.words.margins import place_of
-from orbits.words.word import Word
 
 
 def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:

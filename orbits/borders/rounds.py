@@ -1,20 +1,35 @@
 """What changes at a border in some rounds of a cycle only: orbits of less symmetry or longer period that leave there.
 
-A round is a whole cycle, or half a symmetric one. From the derivatives of unchanged and of changed rounds `orbits.cycles.rounds` judges cycles of several.
+A round is a whole cycle, or half a symmetric one. From the derivatives of unchanged and of changed rounds cycles of several are judged: which may be
+stable, and real?
+
+At the border every round is the border cycle itself, seen with the old word or with the new one. Next to it the map of a round is, to
+first order, x -> A x + b with the old word and x -> B x + b with the new one, where A and B, the derivatives of these cycles' own
+maps, agree on the border. Cycles of this piecewise linear map are known in closed form: the multipliers are the
+eigenvalues of the product M of its matrices, and the distances from the border of its points are proportional to det P_i, where P_i = 1 +
+M_{n-1} + M_{n-1} M_{n-2} + ... + M_{n-1} ... M_1 when the cycle is read from its i-th point (Simpson & Meiss, SIAM J. Appl. Dyn. Syst. 8
+(2009) 795, lemma 2: s_i = det(P_i) rho.b / det(1 - M)). So a cycle is real, on one side of the border, only where these have one
+sign in all unchanged rounds and the other one in all changed ones.
+
+At an impact of vanishing speed s one of the derivatives grows as 1/s, since a touch displaces x by g s along some vector g, with s^2 the
+distance beyond the border (Nordmark, J. Sound Vib. 145 (1991) 279): to first order in s the cycle has s_i = 0 in a changed round, as if
+that round were linear with a slope without bound. So the signs of det P_i that count are those for s to 0, distinguished from two sizes of s.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from orbits.borders.neighbours import Border, begun, followed, grown, parameter_unit
 from orbits.borders.rewriting import Edit, edits_at
-from orbits.cycles.rounds import MOST, Rounds, choices, derived, escape, judged
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
-from orbits.settings import BORDERING
+from orbits.settings import BORDERING, ROUNDING, SOLVING
 
 
 def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
@@ -99,3 +114,164 @@ def _derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndar
     """Derivative of a round, mirrored where it is half a cycle, and its rounding; None where there is none."""
     found = problem.equations.through_flights(u, p)
     return None if found is None else derived(*found)
+
+
+@np.errstate(all="ignore")
+def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For each cycle of some rounds the least and the largest distance of its points from the border, and the product of its rounds.
+
+    Parameters
+    ----------
+    maps : ndarray, shape (2, n, n)
+        Derivatives of an unchanged and of a changed round.
+    keys : ndarray of int, shape (c, 2)
+        Numbers of rounds, and of changed ones, which come first.
+
+    Returns
+    -------
+    sides : ndarray, shape (c, 2)
+        det P_i (see the top of this module), counted positive on the side on which its first round is real; NaN where one is no number.
+    products : ndarray, shape (c, n, n)
+        Read from the first point.
+    """
+    rounds, changed = keys[:, :1], keys[:, 1:]
+    firsts = np.arange(rounds.max(initial=1))[None, :]  # each cycle is read from each of its points at once
+    P = np.broadcast_to(np.eye(maps.shape[1]), (len(keys), firsts.size, *maps.shape[1:]))
+    M = maps[(changed[:, 0] > 0).astype(int)]
+    for later in range(1, firsts.size):
+        here = maps[((firsts + later) % rounds < changed).astype(int)]
+        goes_on = (later < rounds)[:, :, None, None]
+        P = np.where(goes_on, np.eye(maps.shape[1]) + here @ P, P)
+        M = np.where(goes_on[:, 0], here[:, 0] @ M, M)
+    found = np.where(firsts < changed, 1.0, -1.0) * np.linalg.det(P)
+    exists = firsts < rounds
+    low = np.where(exists, found, np.inf).min(axis=1)
+    high = np.where(exists, found, -np.inf).max(axis=1)
+    finite = (np.isfinite(found) | ~exists).all(axis=1)
+    return np.where(finite[:, None], np.stack([low, high], axis=1), np.nan), M
+
+
+MOST = 8  # up to so many rounds of a cycle are joined to one at a border
+UNSTABLE = 1.5  # a largest multiplier from which on a cycle is unstable, though the product is known next to the border only
+BOUNDED = 0.05  # relative change of the derivatives from one size of what grows to the next, where they have a limit
+
+
+class Rounds(NamedTuple):
+    """Derivatives of the two kinds of rounds.
+
+    Attributes
+    ----------
+    maps : ndarray, shape (2, m, m)
+        Of an unchanged and of a changed round.
+    error : float
+        Of both, relative to their largest entries.
+    linear : bool
+        Whether they have limits at the border, which agree on it.
+    further : ndarray, shape (2, m, m), optional
+        The same derivatives further from the border, where they grow without bound.
+    """
+
+    maps: np.ndarray
+    error: float
+    linear: bool
+    further: np.ndarray | None = None
+
+    def hopeless(self, most: int) -> set[tuple[int, int]]:
+        """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
+        two rounds, not stable.
+        """
+        keys = choices(most)
+        sides, products = sides_of_cycles(self.maps, np.array(keys))
+        beside = sides if self.further is None else sides_of_cycles(self.further, np.array(keys))[0]
+        own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
+        finite = np.isfinite(products).all(axis=(1, 2))
+        largest = np.full(len(keys), np.nan)  # moduli of multipliers
+        largest[finite] = np.abs(np.linalg.eigvals(products[finite])).max(axis=1)
+        hopeless = set()
+        for key, (low, high), before, product, size in zip(
+            keys, sides.tolist(), beside.tolist(), products, largest.tolist()
+        ):
+            if self.linear:
+                torn = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
+            elif self.further is not None and _lasts(-low, -before[0]) and _lasts(high, before[1]):
+                torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < ROUNDING.sure
+            else:
+                torn = False
+            if torn or (key[0] > 2 and size > UNSTABLE + self._rounding(*key, own, other)):
+                hopeless.add(key)
+        return hopeless
+
+    def _rounding(self, rounds: int, changed: int, own: float, other: float) -> float:
+        """Of a product of so many rounds, whose derivatives are no larger than `own` and, of changed ones, `other`."""
+        try:
+            return rounds * self.error * own ** (rounds - changed) * other**changed
+        except OverflowError:
+            return math.inf
+
+
+def _lasts(near: float, further: float) -> bool:
+    """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
+    return near > ROUNDING.decided and further - near <= ROUNDING.decided * near
+
+
+@cache
+def choices(most: int) -> list[tuple[int, int]]:
+    """Numbers of rounds, and of changed ones among them, of the cycles that are looked at."""
+    return [(n, changed) for n in range(2, most + 1) for changed in dict.fromkeys((1, n - 1))]
+
+
+def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds | None:
+    """Rounds from the derivatives, with their errors, of unchanged and of changed ones, from far to near the border; None where they
+    cannot be determined.
+    """
+    found, further, error, bounded = [], [], 0.0, True
+    for maps in kinds:
+        if not maps or any(m is None for m in maps):
+            return None
+        far, near = maps[0], maps[-1]
+        assert far is not None and near is not None
+        found.append(near[0])
+        further.append(far[0])
+        size = float(np.abs(near[0]).max())
+        error = max(error, near[1] / size if size > 0.0 else 0.0)
+        bounded = bounded and bool(np.abs(far[0] - near[0]).max() <= BOUNDED * max(size, 1.0))
+    if not error <= ROUNDING.sure:
+        return None
+    return Rounds(np.array(found), error, bounded and _agree(*found), None if bounded else np.array(further))
+
+
+def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:
+    """Whether two derivatives differ by a matrix of rank one: on the border the maps are the same."""
+    first, second = [*np.linalg.svd(changed - plain, compute_uv=False).tolist(), 0.0][:2]
+    return second <= BOUNDED * max(first, float(np.abs(plain).max()))
+
+
+@np.errstate(all="ignore")
+def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, float] | None:
+    """The derivative of a round, the product of those of its flights, and its rounding; None where it is no number.
+
+    Parameters
+    ----------
+    A : ndarray, shape (l, n, n)
+        Derivatives of its flights.
+    D : ndarray, shape (l, n, n), optional
+        If given, both are derivatives of the equations of each flight: by the node before it, and after it.
+    """
+    try:
+        factors = A if D is None else -np.linalg.solve(D, A)
+    except np.linalg.LinAlgError:
+        return None
+    whole = sizes = np.eye(A.shape[1])
+    for factor in factors:
+        whole, sizes = factor @ whole, np.abs(factor) @ sizes
+    error = SOLVING.rounding * float(sizes.max())
+    return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
+
+
+def escape(symmetric: bool, rounds: int) -> str:
+    """What becomes of the period where only some of so many rounds change."""
+    if rounds == 2:
+        return f"the {'symmetry breaks' if symmetric else 'period doubles'} at the border"
+    if symmetric and rounds % 2 == 0:
+        return f"at the border the symmetry breaks and the period becomes {rounds // 2} times as long"
+    return f"at the border the period becomes {rounds} times as long"

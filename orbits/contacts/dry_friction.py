@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Change, Grows, Letter, Site, Spot, What
+from orbits.contacts import HIT, SLIP, STICK, TURN, Change, Grows, Letter, Site, Spot, What
 from orbits.settings import GROWING
 
 SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is zero

@@ -13,19 +13,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.letters import (
-    SLIP,
-    STICK,
-    SWITCH,
-    TURN,
-    Change,
-    Grows,
-    Letter,
-    NotAlternating,
-    Site,
-    Spot,
-    What,
-)
+from orbits.contacts import SLIP, STICK, SWITCH, TURN, Change, Grows, Letter, NotAlternating, Site, Spot, What
 from orbits.settings import GROWING
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Change, Grows, Letter, Site, Spot, What
+from orbits.contacts import HIT, STICK, SWITCH, TURN, Change, Grows, Letter, Site, Spot, What
 
 FREE, HELD = 0, 1  # modes
 

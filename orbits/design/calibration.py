@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from orbits.machines.base import ParameterError
-from orbits.machines.path import along
+from orbits.machines.parameters import along
 from orbits.settings import DESIGNING
 
 if TYPE_CHECKING:
@@ -176,7 +176,7 @@ def from_sweep(
     unknown, limits, fixed, confidence
         As for `from_impacts`.
     measure : str
-        What was measured: of `orbits.attractors.observation.measure_names`.
+        What was measured: of `orbits.attractors.attractor.measure_names`.
     transient : float
         Forcing periods after which a response is taken as steady.
     """

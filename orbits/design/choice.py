@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from orbits.arguments import SMALLEST
 from orbits.machines.base import ParameterError
-from orbits.numbers import SMALLEST
 from orbits.settings import DESIGNING
 
 Evaluate = Callable[[dict[str, float]], Mapping[str, float]]

@@ -15,12 +15,12 @@ import numpy as np
 
 from orbits.attractors.search import find_attractor, met
 from orbits.attractors.sweeping import SweepRow, sweep
-from orbits.contacts.letters import Mode
-from orbits.flows.catalogue import flow_of
+from orbits.contacts import Mode
+from orbits.flows import flow_of
 from orbits.flows.protocol import SimulationError
 from orbits.machines.parameters import Table, resolved
 from orbits.orbit import Orbit
-from orbits.population.population import Population
+from orbits.population import Population
 from orbits.settings import DESIGNING
 from orbits.simulation.runs import Start
 from orbits.starts.find import StartError, centred, find, polish

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from orbits.theory import manifolds
 
 if TYPE_CHECKING:
-    from orbits.numbers import Reals
+    from orbits.arguments import Reals
 
 SCALE = (1e-9, 1e9)  # metres and hertz of a machine; squares and quotients stay far from overflow
 _AROUND = (1e-12, 1e12)  # of the maps drawn around it

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.contacts import HIT
 from orbits.contacts.dry_friction import DryFriction
-from orbits.contacts.letters import HIT
 from orbits.contacts.wall import Wall
 from orbits.design.record import settled
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.flows.page.measures import Impacts, farthest, friction_work
 from orbits.flows.page.simulator import PageTrajectory
 from orbits.flows.page.stepper import TWO_PI

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.contacts.letters import HIT
+from orbits.contacts import HIT
 from orbits.design.record import oscillator_numbers, recorded
 from orbits.design.references import compliance, tuning
 from orbits.flows.page.stepper import TWO_PI, Stepper

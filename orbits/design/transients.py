@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.arguments import SMALLEST
 from orbits.design.record import Dissipation, oscillator_numbers, settled
 from orbits.machines.base import ParameterError
 from orbits.machines.physical.machine import Physical
-from orbits.numbers import SMALLEST
 from orbits.settings import DESIGNING
 from orbits.simulation.runs import simulate
 

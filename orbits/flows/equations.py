@@ -10,7 +10,7 @@ import numpy as np
 
 from contvines.core.table import KernelFunctions
 from orbits.flows.trajectory import TWO_PI
-from orbits.machines.path import along
+from orbits.machines.parameters import along
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class Equations(ABC, Generic[ModelOf]):
     period_shift : float array (N,) or None
         What a turn of the forcing adds to the unknowns.
     path : float array (2, P)
-        How the numbers follow the parameter (`orbits.machines.path`).
+        How the numbers follow the parameter (`orbits.machines.parameters`).
     units : (float, float)
         Length and rate in which the unknowns are counted; `unit` is what one of each entry of the nodes is, shape (L, n).
     data

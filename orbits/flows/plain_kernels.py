@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
-from orbits.numbers import ROUNDOFF
+from orbits.arguments import ROUNDOFF
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:

@@ -52,14 +52,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
-from orbits.contacts.letters import Change, Site, Spot
+from orbits.arguments import SMALLEST
+from orbits.contacts import Change, Site, Spot
 from orbits.flows.equations import Equations, ModelOf
 from orbits.flows.trajectory import TWO_PI, Trajectory
-from orbits.numbers import SMALLEST
 from orbits.settings import GROWING
 
 if TYPE_CHECKING:
-    from orbits.contacts.letters import Mode
+    from orbits.contacts import Mode
     from orbits.machines.varying import Varying
     from orbits.words import Word
 
@@ -68,7 +68,7 @@ Run = TypeVar("Run", bound=Trajectory)
 
 
 class Motion(Protocol[ModelSeen]):
-    """What a flow is asked about: word, nodes and parameters of a cycle (`orbits.cycles.cycle.Cycle`)."""
+    """What a flow is asked about: word, nodes and parameters of a cycle (`orbits.cycle.Cycle`)."""
 
     @property
     def model(self) -> ModelSeen: ...

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, HOLD, RELEASE
+from orbits.contacts import HIT, HOLD, RELEASE
 from orbits.machines.stepping import REST, STATUS, TIME_REACHED
 from orbits.settings import SIMULATING
 from orbits.words import Word
@@ -36,7 +36,7 @@ class Trajectory(ABC, Generic[ModelOf]):
     finish : float
         Clock at which the run ended.
     kinds : int array (m,)
-        What the events do (`orbits.contacts.letters`).
+        What the events do (`orbits.contacts`).
     status : int
         Why the run ended (`orbits.machines.stepping`); `ended` says it in words.
     """

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.arguments import COMPLEX_STEP
 from orbits.integrators import expressions
 from orbits.integrators.expressions import Layout, in_order, rebuilt, variables_of
 from orbits.integrators.protocol import Crossing
-from orbits.numbers import COMPLEX_STEP
 from orbits.symbols import Symbol
 
 if TYPE_CHECKING:

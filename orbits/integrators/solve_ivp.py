@@ -13,9 +13,9 @@ import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import minimize_scalar, root_scalar
 
+from orbits.arguments import ROUNDOFF
 from orbits.integrators.expressions import Layout, Values, constant, derivatives, variable, written
 from orbits.integrators.protocol import Crossing
-from orbits.numbers import ROUNDOFF
 from orbits.settings import INTEGRATING
 from orbits.symbols import Symbol
 

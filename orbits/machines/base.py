@@ -31,8 +31,8 @@ from orbits.words import Word
 from orbits.words.alphabet import shaken
 
 if TYPE_CHECKING:
+    from orbits.arguments import Reals
     from orbits.machines.rest import Rest
-    from orbits.numbers import Reals
 
 ONE = np.float64(1.0)
 

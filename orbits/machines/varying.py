@@ -13,13 +13,12 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.measures import SYMBOLS, WORDS
-from orbits.machines.parameters import Parameter, ParameterError
-from orbits.machines.path import products, single
+from orbits.machines.parameters import Parameter, ParameterError, products, single
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from orbits.numbers import Reals
+    from orbits.arguments import Reals
     from orbits.words import Word
 
 
@@ -98,7 +97,7 @@ class Varying:
         return float(self.amounts(params)[self.place_of(name)])
 
     def path(self, name: str, params: np.ndarray) -> np.ndarray:
-        """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.path`."""
+        """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.parameters`."""
         place, law = self.place_of(name), self.law
         if not len(law):
             return single(params.size, place)
@@ -327,7 +326,7 @@ class Varying:
         SimulationError
             If the machine has no such parameter.
         """
-        from orbits.population.population import Population
+        from orbits.population import Population
 
         return Population(self, over or self.default_parameter, parameters)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from orbits.contacts.letters import NAMES
+from orbits.contacts import NAMES
 from orbits.contacts.wall import Wall
 from orbits.machines.base import Model
 from orbits.machines.page.page import Named, NoPhase, States

@@ -137,7 +137,7 @@ class AtPair(AtMultiplier):
 class Vanishing:
     """The margin that vanishes at a border: its name, the event, and on which side.
 
-    Names are those of `orbits.words.margins` and "reversal" (a wall met by a flight that reverses freely).
+    Names are those of `orbits.words` and "reversal" (a wall met by a flight that reverses freely).
     """
 
     name: str

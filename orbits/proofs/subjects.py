@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from contvines.shared.near_names import no_parameter
-from orbits.cycles.cycle import root_orbit
-from orbits.flows.catalogue import flow_of
+from orbits.cycle import root_orbit
+from orbits.flows import flow_of
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.checks import check_symmetry, motif_of
 from orbits.proofs.equations import Motif, Varying
@@ -20,11 +20,10 @@ from orbits.proofs.pieces import Pieces, prove_piece
 from orbits.proofs.proof import Proof
 from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special, prove_stuck
 from orbits.settings import PROVING
-from orbits.words import Word
-from orbits.words.margins import margin_name
+from orbits.words import Word, margin_name
 
 if TYPE_CHECKING:
-    from orbits.cycles.cycle import Cycle
+    from orbits.cycle import Cycle
     from orbits.machines.varying import Varying as VaryingMachine
 
 

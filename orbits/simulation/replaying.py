@@ -16,11 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, SLIP, STICK, TURN
-from orbits.flows.catalogue import flow_of, simulator_of
+from orbits.arguments import SMALLEST
+from orbits.contacts import HIT, SLIP, STICK, TURN
+from orbits.flows import flow_of, simulator_of
 from orbits.flows.protocol import Motion, SimulationError, Simulator
 from orbits.flows.trajectory import TWO_PI, Trajectory
-from orbits.numbers import SMALLEST
 from orbits.settings import REPLAYING, SIMULATING
 from orbits.words import Word
 from orbits.words.alphabet import Watch

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.flows.protocol import SimulationError, Simulator
 
 if TYPE_CHECKING:

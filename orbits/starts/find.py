@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.flows.catalogue import flow_of
+from orbits.flows import flow_of
 from orbits.flows.equations import solved_nodes
 from orbits.flows.protocol import SimulationError
 from orbits.orbit import Orbit

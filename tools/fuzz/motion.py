@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.borders.distance import PER_PERIOD
+from orbits.orbit import PER_PERIOD
 
 BACKWARDS = -1e-6  # durations below: singular points of virtual branches are known to half their digits
 LONGEST = 64  # forcing periods over which motions are compared

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.flows.protocol import SimulationError
 from orbits.simulation import replay
 from orbits.simulation.replaying import monodromy

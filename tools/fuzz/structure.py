@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from contvines.bifurcation.kinds import BORDERS
-from orbits.borders.distance import PER_PERIOD
-from orbits.orbit import REAL
+from orbits.orbit import PER_PERIOD, REAL
 from orbits.starts.find import polish
 from tools.fuzz.many_digits import exact, rounds_apart
 from tools.fuzz.motion import apart, shortest

@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 import contvines as cv
-from orbits.contacts.letters import HOLD, RELEASE
+from orbits.contacts import HOLD, RELEASE
 from orbits.flows.page.simulator import collect, outside
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from tools.pages.pages import page

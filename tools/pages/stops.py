@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from orbits.contacts.letters import HIT
+from orbits.contacts import HIT
 from orbits.flows.page.stepper import Stepper
 from tests.orbits.declared.test_simulation import rattler
 

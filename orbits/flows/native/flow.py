@@ -9,20 +9,18 @@ import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from contvines.shared.motions import BAND, SILENT
+from orbits.contacts import HIT, SLIP, Change, Site
 from orbits.contacts.dry_friction import STUCK
-from orbits.contacts.letters import HIT, SLIP, Change, Site
 from orbits.flows.equations import Equations
 from orbits.flows.native import measures
 from orbits.flows.native.cycle_equations import NativeEquations
-from orbits.flows.native.measures import gauged
+from orbits.flows.native.measures import events_of, gauged
 from orbits.flows.protocol import Census, Flow, Motion, Vanishing
 from orbits.machines.base import Model
-from orbits.machines.events import events_of
 from orbits.machines.native_stepper import bytes_of, floats, number, stepper
 from orbits.settings import EVENTS, GROWING, SIMULATING
-from orbits.words import Word
+from orbits.words import Word, place_of
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT, Watch
-from orbits.words.margins import place_of
 
 FLIGHT = 0  # column of the margin that watches a flight
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for

@@ -9,7 +9,7 @@ import numpy as np
 from contvines.core.multipliers.periodic_schur import reference as multipliers
 from orbits.arguments import CycleData, Workspace, jacobian
 from orbits.flows.plain_kernels import PlainKernels
-from orbits.machines import path
+from orbits.machines import parameters
 from orbits.machines.reference import maps
 from orbits.machines.reference.machine import Reference
 from orbits.words.alphabet import CODES
@@ -29,7 +29,7 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
     natural = True
     column = 3
     matrix = staticmethod(jacobian)
-    assign = staticmethod(path.assign)
+    assign = staticmethod(parameters.assign)
 
     def __init__(self, machine: Reference) -> None:
         self.machine = machine

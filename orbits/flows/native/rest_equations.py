@@ -7,7 +7,7 @@ import numpy as np
 from orbits.flows.equations import Equations
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines.base import Model
-from orbits.machines.path import assign
+from orbits.machines.parameters import assign
 from orbits.settings import SOLVING
 
 RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from orbits.contacts import letters as kinds
+from orbits import contacts as kinds
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, Stepper, W
 from orbits.settings import EVENTS, SIMULATING

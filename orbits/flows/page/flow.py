@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.motions import BAND, SILENT
-from orbits.contacts.letters import Site
+from orbits.arguments import SMALLEST
+from orbits.contacts import Site
 from orbits.contacts.wall import Wall
 from orbits.flows.page import measures
 from orbits.flows.page.cycle_equations import PageEquations
@@ -16,10 +17,8 @@ from orbits.flows.protocol import Census, Flow, Motion, Vanishing
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.si import OF_A_STATE
-from orbits.numbers import SMALLEST
 from orbits.settings import EVENTS, SIMULATING
-from orbits.words import Word
-from orbits.words.margins import place_of
+from orbits.words import Word, place_of
 
 LARGE = 5  # states
 

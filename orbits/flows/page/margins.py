@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
+from orbits.contacts import HIT, SLIP, STICK, SWITCH, TURN
 from orbits.settings import EVENTS
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, Letter
+from orbits.contacts import HIT, Letter
 from orbits.flows.page.pieces import flown
 from orbits.machines.measures import loads, way_out
 from orbits.machines.page.machine import Machine

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from orbits.arguments import Reals
+from orbits.contacts import HIT, STICK, STROBE, Letter
 from orbits.contacts.dry_friction import SLIDE_BACK, SLIDE_ON, STUCK, DryFriction
-from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.flows.equations import Equations
 from orbits.flows.trajectory import TWO_PI
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
-from orbits.numbers import Reals
 from orbits.words import Word
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from orbits.contacts.letters import HOLD, RELEASE
+from orbits.contacts import HOLD, RELEASE
 from orbits.contacts.wall import HELD
 from orbits.flows.page.pieces import flown
 from orbits.flows.page.stepper import TWO_PI, Stepper

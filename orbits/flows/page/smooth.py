@@ -26,8 +26,7 @@ from orbits.machines.page.compiled import moving
 from orbits.machines.page.loading import machine_again
 from orbits.machines.page.machine import Machine
 from orbits.settings import EVENTS, SOLVING
-from orbits.words.margins import border_kind
-from orbits.words.word import Word
+from orbits.words import Word, border_kind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from orbits.contacts import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 from orbits.contacts.dry_friction import ABSENT, STUCK
-from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 from orbits.contacts.wall import FREE, HELD
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.machine import Machine

@@ -16,9 +16,9 @@ import math
 import numpy as np
 
 from contvines.shared.motions import mean_of_blocks
-from orbits.contacts.letters import HIT, HOLD, RELEASE, Letter
+from orbits.arguments import SMALLEST
+from orbits.contacts import HIT, HOLD, RELEASE, Letter
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.numbers import SMALLEST
 from orbits.settings import SIMULATING
 
 

@@ -8,7 +8,7 @@ from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
+from orbits.contacts import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.integrators.engine import engine
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.integrators.protocol import Flight, Flights, Run, Watch

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.near_names import hinting, no_parameter
+from orbits.arguments import Reals
+from orbits.contacts import HIT
 from orbits.contacts.dry_friction import ABSENT, STUCK
-from orbits.contacts.letters import HIT
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
 from orbits.machines.measures import SYMBOLS
@@ -23,7 +24,6 @@ from orbits.machines.page.possible import Possible
 from orbits.machines.page.si import CONTACT, OF_LOADS, Units, load_names
 from orbits.machines.parameters import ParameterError
 from orbits.machines.varying import Varying
-from orbits.numbers import Reals
 from orbits.words import Word
 from orbits.words.alphabet import Alphabet
 

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, SupportsFloat
 
 import numpy as np
 
+from orbits.contacts import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
-from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import HELD, Wall
 from orbits.integrators.expressions import Layout, constant, derivatives, replaced, variable, variables_of

@@ -1,7 +1,7 @@
 """A machine whose parameters are physical quantities: kilograms, millimetres and hertz outside, its own numbers inside.
 
 The maps, the simulator and all else read the machine's dimensionless numbers, to whose vector the scales are appended. What varies is
-a quantity, counted in the unit in which it was given; it may move several numbers (`orbits.machines.path`). Measures are
+a quantity, counted in the unit in which it was given; it may move several numbers (`orbits.machines.parameters`). Measures are
 multiplied by what one dimensionless unit is.
 """
 
@@ -18,8 +18,7 @@ from contvines.shared.motions import BAND
 from orbits.machines.base import Model
 from orbits.machines.measures import KINDS
 from orbits.machines.names import model_class
-from orbits.machines.parameters import POSITIVE, Parameter
-from orbits.machines.path import along, products
+from orbits.machines.parameters import POSITIVE, Parameter, along, products
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
 from orbits.machines.physical.tables import TABLES, Table, check_ratios

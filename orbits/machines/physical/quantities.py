@@ -106,7 +106,7 @@ class Basis:
 
     @cached_property
     def law(self) -> np.ndarray:
-        """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents; see `orbits.machines.path.products`."""
+        """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents; see `orbits.machines.parameters.products`."""
         exponents = (
             np.round(4.0 * np.linalg.inv(self.powers)) / 4.0 + 0.0
         )  # they are halves and whole numbers

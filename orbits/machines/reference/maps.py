@@ -30,10 +30,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.machines.path import place
+from orbits.arguments import COMPLEX_STEP
+from orbits.machines.parameters import place
 from orbits.machines.reference.law import LawOf
 from orbits.machines.reference.oscillation import State, after, chosen, leg
-from orbits.numbers import COMPLEX_STEP
 from orbits.words.alphabet import CODES
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
     u : float array (n L,)
         Nodes, node-major.
     p : float
-        Value of the parameter that varies; what it moves: `orbits.machines.path`.
+        Value of the parameter that varies; what it moves: `orbits.machines.parameters`.
     work : Workspace
         F, A, D, Q, the parameters and the sines and cosines are filled.
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orbits.arguments import ROUNDOFF, SMALLEST
 from orbits.machines.reference.law import Law, Number, Response, where
 from orbits.machines.stepping import MODE, PSI, RATE, V_RATE, V, W
-from orbits.numbers import ROUNDOFF, SMALLEST
 from orbits.settings import STEPPING
 
 NEAR = 0.03  # Taylor series to order 8 up to here: relative error below roundoff

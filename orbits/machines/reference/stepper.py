@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import root_scalar
 
+from orbits.arguments import ROUNDOFF, SMALLEST
 from orbits.machines.reference.law import Law, Side
 from orbits.machines.reference.oscillation import (
     Oscillation,
@@ -50,7 +51,6 @@ from orbits.machines.stepping import (
     V,
     W,
 )
-from orbits.numbers import ROUNDOFF, SMALLEST
 from orbits.settings import EVENTS, STEPPING
 
 _L, _R, _T, _S, _U = range(5)

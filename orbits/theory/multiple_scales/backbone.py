@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbits.numbers import Reals
+from orbits.arguments import Reals
 
 from .flow import SlowFlow
 

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import root_scalar
 
-from orbits.numbers import ROUNDOFF
+from orbits.arguments import ROUNDOFF
 
 from .flow import SlowFlow
 

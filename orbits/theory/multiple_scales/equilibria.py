@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbits.numbers import Reals
+from orbits.arguments import Reals
 
 from .. import manifolds
 from .flow import Manifold, SlowFlow

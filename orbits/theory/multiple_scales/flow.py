@@ -26,7 +26,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbits.numbers import Reals
+from orbits.arguments import Reals
 
 from .. import manifolds
 

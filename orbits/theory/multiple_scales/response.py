@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from orbits.numbers import ROUNDOFF, Reals
+from orbits.arguments import ROUNDOFF, Reals
 from orbits.settings import THEORY
 
 from .equilibria import Equilibrium, equilibrium_at, phase_at

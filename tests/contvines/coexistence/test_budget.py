@@ -7,7 +7,7 @@ import contvines as cv
 from contvines.graph.persistence import same_graph
 from orbits import Absorber
 from orbits.attractors.search import attracted
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.flows.native.simulator import skip
 from orbits.machines.native_stepper import stepper as machine
 from orbits.machines.stepping import RATE, TURNS, W

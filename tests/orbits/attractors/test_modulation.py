@@ -6,7 +6,7 @@ import pytest
 from contvines.loci.regions import Region
 from orbits import Coupled, Machine
 from orbits.attractors import find_attractor
-from orbits.attractors.observation import modulation
+from orbits.attractors.attractor import modulation
 from orbits.attractors.sweeping import sweep
 from orbits.simulation import simulate
 from orbits.symbols import cos
@@ -42,7 +42,7 @@ def test_a_modulated_motion_is_that_of_a_dense_sampling():
 
 def test_a_steady_response_is_not_modulated_by_what_tables_do_not_show():
     """Of a light absorber that wanders in its cavity: 2.0000 to 2.0005 is 2, whatever impacts do; impacts that come and go are told."""
-    from orbits.attractors.observation import Modulation
+    from orbits.attractors.attractor import Modulation
 
     assert Modulation(2.0, 2.0002, 2.0005, 0.0).kind == ""
     assert Modulation(2.0, 2.002, 2.005, 0.0).kind == "weak modulation"
@@ -55,7 +55,7 @@ def test_what_sticks_moves_with_its_cavity_once_a_forcing_period():
 
 
 def test_impacts_that_stop_and_begin_again_make_it_strong():
-    from orbits.attractors.observation import Modulation
+    from orbits.attractors.attractor import Modulation
 
     assert Modulation(1.0, 2.0, 3.0, 0.4).kind == "strong modulation"
     assert Modulation(1.0, 2.0, 3.0, 1.0).kind == "weak modulation"  # no impacts at all

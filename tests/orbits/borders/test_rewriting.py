@@ -6,7 +6,7 @@ import pytest
 from orbits import Absorber
 from orbits.borders.rewriting import edits_at
 from orbits.borders.rewriting import rewritten as applied
-from orbits.contacts.letters import Grows
+from orbits.contacts import Grows
 from orbits.orbit import Orbit
 from orbits.settings import GROWING
 from orbits.words import Word

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from orbits import Absorber
-from orbits.words import Word
-from orbits.words.margins import border_kind, limits_of, margin_name
+from orbits.words import Word, border_kind, limits_of, margin_name
 
 FLIGHT, EVENT, WALL, DURATION = range(4)
 # word, event, column -> what is watched, border

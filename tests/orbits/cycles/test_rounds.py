@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.cycles.rounds import Rounds
+from orbits.borders.rounds import Rounds
 
 ROUNDS = 8
 

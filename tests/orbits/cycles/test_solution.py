@@ -5,7 +5,7 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from orbits.cycles.cycle import is_symmetric
+from orbits.cycle import is_symmetric
 from orbits.simulation.replaying import by_events, replay
 from orbits.words import Word
 from tools.fuzz.drawing import draw

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import DryFriction, Machine, Switch, Wall
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.simulation.runs import Section
 from orbits.symbols import cos, sin, sqrt
 from orbits.words import Word

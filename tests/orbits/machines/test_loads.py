@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled, Machine, Wall
-from orbits.machines.catalogue import build
+from orbits.flows import machine_of
 from orbits.machines.measures import LOADS
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.page import PageError
@@ -41,7 +41,7 @@ def test_impulses_change_the_absorbers_momentum(orbit):
 
 def test_in_si_units():
     """All loads from the fastest impact's speed in m/s, the masses in kg and the frequency in Hz."""
-    machine = build(
+    machine = machine_of(
         {
             "name": "coupled", "units": "si", "oscillator_mass": "3.2 kg", "absorber_mass": "32 g", "half_width": "15 mm",
             "natural_frequency": "8 Hz", "damping_ratio": 0.01, "restitution": 0.65, "friction": 0.1, "base_amplitude": "1 mm",

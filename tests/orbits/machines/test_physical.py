@@ -6,8 +6,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from orbits.flows import machine_of
 from orbits.machines.base import ParameterError
-from orbits.machines.catalogue import build
 from orbits.machines.physical import QuantityError, physical
 
 FLAT = {
@@ -77,7 +77,7 @@ def test_quantities_are_kept_as_they_were_said():
     machine = physical("coupled", FLAT | {"half_width": "1.5 cm"})
     assert machine.quantities["half_width"] == 1.5
     assert machine.units["half_width"] == "cm"
-    again = build(machine.settings())
+    again = machine_of(machine.settings())
     assert np.array_equal(again.vector({}), machine.vector({}))
     assert np.array_equal(pickle.loads(pickle.dumps(machine)).vector({}), machine.vector({}))
 

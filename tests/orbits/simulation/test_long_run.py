@@ -7,7 +7,7 @@ import pytest
 
 from orbits import Coupled
 from orbits.attractors import find_attractor, sweep
-from orbits.attractors.observation import lasting, observe
+from orbits.attractors.attractor import lasting, observe
 from orbits.machines.stepping import HOLD
 from orbits.simulation import simulate
 from tests.machines import ABSORBER

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import fsolve
 
 from orbits.attractors import find_attractor
-from orbits.cycles.cycle import Cycle
+from orbits.cycle import Cycle
 from orbits.machines.absorber import Absorber
 from orbits.simulation import replay
 from orbits.words import Word

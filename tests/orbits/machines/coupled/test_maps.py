@@ -6,7 +6,7 @@ import pytest
 
 from orbits.arguments import cycle_data, workspace
 from orbits.flows.native.reference_kernels import ReferenceKernels
-from orbits.machines.path import single
+from orbits.machines.parameters import single
 from orbits.machines.reference.machine import reference
 from tests.orbits.machines.coupled.motion import path
 

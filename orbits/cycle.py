@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from orbits.flows.catalogue import flow_of
+from orbits.flows import flow_of
+from orbits.flows.native.measures import EventTable, events_of
 from orbits.flows.protocol import Flow
-from orbits.machines.events import EventTable, events_of
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 
@@ -231,7 +231,7 @@ def is_symmetric(
     `image` are the nodes mirrored, at the same phases; by default all states have the opposite sign.
     """
     if not len(word):
-        return not len(nodes)  # at rest; a forced motion without events: `orbits.cycles.cycle`
+        return not len(nodes)  # at rest; a forced motion without events: `orbits.cycle`
     if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)):
         return False
     half = len(word) // 2

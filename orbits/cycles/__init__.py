@@ -1,1 +1,0 @@
-"""Cycles: identity, rounds and deviation from the simulation of periodic motions."""
