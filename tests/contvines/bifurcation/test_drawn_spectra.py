@@ -1,7 +1,10 @@
 """Drawn branches in closed form with clusters of folds, doublings and pairs; ``python -m tools.fuzz.spectra 1000`` asks for more."""
 
+import numpy as np
 import pytest
 
+import contvines as cv
+from tests.contvines.lines import Line
 from tools.fuzz.spectra import Spectrum
 
 
@@ -60,25 +63,16 @@ def test_as_many_folds_as_the_direction_changes_before_a_border(seed, edge):
     assert not said
 
 
-class BesideBorder(Spectrum):
-    """p = u with the multiplier -1 at a place, in front of a border at u = 0."""
-
-    n_margins = 1
-
-    def __init__(self, place):
-        super().__init__(0)
-        self.place, self.folds, self.doublings, self.edge = place, [], [place], 0.0
-        self.heights, self.widths = [2.0, 1.0], [0.5, 0.5]
-        self.slope, self.value = self.slope.__class__([1.0]), self.slope.__class__([0.0, 1.0])
-        self.p0 = float(self.u0[0])
-
-    _inspect, margin_kind, places = staticmethod(Bordered._inspect), Bordered.margin_kind, Bordered.places
-
-
 @pytest.mark.parametrize("place", [-8e-7, -3e-7, -1.5e-7, -5e-8])
 def test_a_doubling_close_before_a_border(place):
     """Between the border and the place close before it from which one-sided limits are taken."""
-    graph = BesideBorder(place).graph()
+
+    def multipliers(u, p):
+        product = 0.5 * np.tanh((u - place) / 0.5)
+        return np.roots([1.0, 1.0 - product, product])  # one is -1 where the product is 0
+
+    problem = Line(lambda u, p: [-u], multipliers, start=(-0.7, -0.7))
+    graph = cv.diagram(problem, within=(-1.7, 1.9), depth=0)
     (doubling,) = graph.of_kind("period-doubling")
     assert doubling.u[0] == pytest.approx(place, abs=1e-12)
     assert not graph.unresolved

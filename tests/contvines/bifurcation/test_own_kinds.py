@@ -10,8 +10,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contvines as cv
+from contvines.command.study import read_study
 from tests.contvines.loci.systems import BAZYKIN_DOUBLE_ZERO, bazykin
-from tests.machines import ABSORBER
+from tests.contvines.studies import PAPER
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "neutral_saddle.py"
 
@@ -95,40 +96,15 @@ def test_a_test_that_is_nowhere_a_number_is_told():
         with_kind(cv.AlgebraicProblem(lambda u, p: u - p, [0.5], 0.5), nothing)
 
 
-STUDY = """
-[model]
-name = "model.py:flow"
-
-[continue]
-parameter = "alpha"
-within = [0.3, 0.6]
-kinds = "neutral_saddle.py:{name}"
-"""
-MODEL = """
-import contvines as cv
-from neutral_saddle import bazykin
-
-flow = cv.FlowProblem(lambda x, p: bazykin(x, p), [20.0, 5.5], {"alpha": 0.4, "delta": 0.15})
-"""
-
-
-def test_studies_name_kinds_in_a_file(tmp_path, monkeypatch):
-    from contvines.command.compose import first_orbit, run_diagram
-    from contvines.command.study import read_study
-
+def test_studies_name_kinds_in_a_file(tmp_path):
+    """A change of it is one of the study."""
     file, path = tmp_path / "neutral_saddle.py", tmp_path / "study.toml"
     file.write_text(EXAMPLE.read_text())
-    (tmp_path / "model.py").write_text(MODEL)
-    path.write_text(STUDY.format(name="NEUTRAL_SADDLE"))
-    monkeypatch.syspath_prepend(str(tmp_path))
-    study = read_study(path)
-    graph = run_diagram(study, first_orbit(study))
-    inner = max(graph.of_kind("neutral-saddle"), key=lambda point: point.u[1])
-    assert inner.value == pytest.approx(saddle(0.15, [*inner.u, inner.value])[2], abs=1e-10)
-    before = study.fingerprint()
+    path.write_text(PAPER.replace("depth = 0", 'kinds = "neutral_saddle.py:NEUTRAL_SADDLE"'))
+    before = read_study(path).fingerprint()
     file.write_text(EXAMPLE.read_text() + "\n# changed\n")
     assert read_study(path).fingerprint() != before
-    path.write_text(STUDY.format(name="SADDLE"))
+    path.write_text(path.read_text().replace(":NEUTRAL_", ":"))
     with pytest.raises(ValueError, match="has no kind 'SADDLE'; it has NEUTRAL_SADDLE"):
         read_study(path)
 
@@ -157,27 +133,6 @@ def test_a_zero_trace_on_a_locus_of_folds_is_a_bogdanov_takens_point():
         assert point.value == pytest.approx(BAZYKIN_DOUBLE_ZERO, rel=1e-10)
 
 
-def at(measure, value):
-    """A kind that may be followed: where a measure has a value."""
-
-    def beyond(point):
-        return point.measure(measure) - value
-
-    return cv.Kind("at", "AT", test=beyond, locus=beyond)
-
-
-def test_a_limit_of_the_impact_speed_is_followed_as_the_closed_form_has_it():
-    machine = ABSORBER.changed(friction=0.3, gravity=0.2)
-    graph = with_kind(
-        machine.symmetric_orbit(amplitude=0.6), at("impact_speed", 1.0), (0.4, 0.6), "amplitude"
-    )
-    found = cv.locus(graph["AT1"], over="friction", within=(0.1, 0.5))
-    assert found.values[[0, -1], 1] == pytest.approx([0.1, 0.5])
-    for p, q in found.values:
-        orbit = machine.changed(friction=q).symmetric_orbit(amplitude=p)
-        assert orbit.measure("impact_speed") == pytest.approx(1.0, abs=1e-9)
-
-
 def test_cycles_of_a_given_period_are_followed_on_their_mesh():
     """Beside the cycle to which an integration settles."""
 
@@ -188,9 +143,14 @@ def test_cycles_of_a_given_period_are_followed_on_their_mesh():
         return x[0]
 
     up.direction = 1.0
+
+    def slow(point):
+        return point.measure("period") - 8.0
+
+    kind = cv.Kind("slow", "SLW", test=slow, locus=slow)
     flow = cv.FlowProblem(rates, [0.0, 0.0], {"mu": 1.0, "stiffness": 1.0})
-    graph = with_kind(flow.attractor([1.0, 0.0]), at("period", 8.0), (1.0, 4.0), "mu")
-    found = cv.locus(graph["AT1"], over="stiffness", within=(0.8, 1.3))
+    graph = with_kind(flow.attractor([1.0, 0.0]), kind, (1.0, 4.0), "mu")
+    found = cv.locus(graph["SLW1"], over="stiffness", within=(0.8, 1.3))
     for mu, stiffness in found.values[[0, len(found) // 2, -1]]:
         p = SimpleNamespace(mu=mu, stiffness=stiffness)
         run = solve_ivp(

@@ -5,12 +5,12 @@ import pytest
 
 import contvines as cv
 from contvines.graph.persistence import same_graph
-from orbits import Absorber
 from orbits.attractors.search import attracted
 from orbits.flows import simulator_of
 from orbits.flows.native.simulator import skip
 from orbits.machines.native_stepper import stepper as machine
 from orbits.machines.stepping import RATE, TURNS, W
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -24,49 +24,52 @@ def motions(graph):
     return {(a.value, a.word, a.kind) for a in graph.attractors}
 
 
-def made(budget, journal=None):
+def made(budget=10**9, journal=None, population=None):
     return cv.atlas(
-        logistic(), within=(2.55, 3.4), values=4, starts=4, scan=1, depth=1, budget=budget, journal=journal
+        population or logistic(),
+        within=(2.55, 3.4),
+        values=4,
+        starts=4,
+        scan=1,
+        depth=1,
+        budget=budget,
+        journal=journal,
     )
 
 
-def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
-    whole = made(10**9)
+@pytest.fixture(scope="module")
+def whole():
+    return made()
+
+
+@pytest.fixture(scope="module")
+def least():
+    return made(1)
+
+
+def test_a_budget_is_kept_and_what_it_leaves_out_is_said(whole, least):
     work = whole.settings["work"]
     assert whole.complete and work > 0
     enough = made(work + 1)
     assert enough.complete and motions(enough) == motions(whole) and enough.settings["work"] == work
-    least = made(1)
     assert len({a.value for a in least.attractors}) == 1  # the first of the four given values
-    assert least.finished and not least.complete
-    assert (
-        least.settings["left"]["given values"] == 3
-        and "given values (3)" in least.message
-        and "raise budget" in least.message
-    )
+    assert least.finished and not least.complete and "raise budget" in least.message
+    for what, count in (("given values", 3), ("branches that leave others", 1)):
+        assert least.settings["left"][what] == count and f"{what} ({count})" in least.message
+    # the fixed point 1 - 1 / r doubles at r = 3, and its 2-cycle is left
+    (doubling,) = least.of_kind("period-doubling")
+    assert doubling.value == pytest.approx(3.0) and "budget = 1" in " ".join(doubling.remarks)
     budget = least.settings["work"] + 1
     part = made(budget)
     assert not part.complete and budget <= part.settings["work"] < work
     assert motions(least) <= motions(part) <= motions(whole)
 
 
-def test_what_leaves_a_motion_waits_when_the_budget_is_used_up():
-    """Of the logistic map: the fixed point 1 - 1 / r doubles at r = 3, and its 2-cycle is left."""
-    least = made(1)
-    assert (
-        least.settings["left"]["branches that leave others"] == 1
-        and "branches that leave others (1)" in least.message
-    )
-    (doubling,) = least.of_kind("period-doubling")
-    assert doubling.value == pytest.approx(3.0) and "budget = 1" in " ".join(doubling.remarks)
-
-
-def test_a_larger_budget_goes_on_from_what_was_computed(tmp_path):
+def test_a_larger_budget_goes_on_from_what_was_computed(tmp_path, whole, least):
     """A file keeps all pieces of work until nothing is left out; the result is that of one run with the larger budget."""
-    whole, path = made(10**9), tmp_path / "a.vines"
     records, asked = [], []
-    for budget in (1, made(1).settings["work"] + 1, 10**9):
-        with cv.resume(path) as journal:
+    for budget in (1, least.settings["work"] + 1, 10**9):
+        with cv.resume(tmp_path / "a.vines") as journal:
             before, record = journal.records, journal.record
             journal.record = lambda key, values, record=record: asked.append(key) or record(key, values)
             graph = made(budget, journal)
@@ -75,32 +78,36 @@ def test_a_larger_budget_goes_on_from_what_was_computed(tmp_path):
     assert [before for before, _ in records[1:]] == [after for _, after in records[:-1]]
     assert 0 < records[0][1] < records[1][1] and records[2][1] == 0
     assert len(set(asked)) == len(asked)  # nothing was computed twice
-    graph.settings["budget"] = whole.settings["budget"]
     assert same_graph(graph, whole)
 
 
-def test_the_price_of_integrated_flights_counts():
+def test_the_price_of_integrated_flights_counts(whole, monkeypatch):
     """At twice the price the same budget allows half the work."""
     dear = logistic()
-    type(dear).price, price = 2.0, type(dear).price
-    try:
-        doubled = cv.atlas(dear, within=(2.55, 3.4), values=4, starts=4, scan=1, depth=1)
-    finally:
-        type(dear).price = price
-    assert doubled.settings["work"] == pytest.approx(2 * made(10**9).settings["work"], abs=1)
+    monkeypatch.setattr(type(dear), "price", 2.0)
+    assert made(population=dear).settings["work"] == pytest.approx(2 * whole.settings["work"], abs=1)
+
+
+def test_the_limit_at_which_branches_of_roots_wait_is_said():
+    """The logistic map: zero and 1 - 1/r, of which doublings leave at r = 3 that are not followed."""
+    problem = cv.MapProblem(lambda x, p: [p * x[0] * (1 - x[0])], [0.5], 2.5, parameter="r")
+    graph = cv.atlas(problem, within=(2.4, 3.55), settings={"max_branches": 1})
+    assert "stopped at max_branches = 1" in graph.message and not graph.complete
+
+
+CASCADING = ABSORBER.changed(restitution=0.8564451, friction=0.1418559, gravity=0.4553905)
 
 
 def test_a_motion_between_the_given_values_that_all_starts_reach():
     """All of 30 starts reach LRLt, k = 1, at amplitude 1.50963; its branch hangs together with no other motion of the given values."""
-    absorber = Absorber(restitution=0.8564451, friction=0.1418559, gravity=0.4553905, mass_ratio=0.006)
     there = 1.50963
-    population = absorber.population("amplitude")
+    population = CASCADING.population("amplitude")
     (reached,), _, _ = population.settle(population.starts(30, 1, there), there)
     assert (reached.word, reached.periods) == ("LRLt", 1)
 
     def atlas(scan):
         return cv.atlas(
-            absorber, over="amplitude", within=(1.4, 1.7), values=[1.46, 1.66], starts=8, scan=scan, depth=0, budget=2000
+            CASCADING, over="amplitude", within=(1.4, 1.7), values=[1.46, 1.66], starts=8, scan=scan, depth=0, budget=2000
         )  # fmt: skip
 
     holding = [
@@ -110,18 +117,11 @@ def test_a_motion_between_the_given_values_that_all_starts_reach():
     assert any(low < there < high for low, high in atlas(0).settings["unknown"])
 
 
-def on(machine, params, state):
-    """A simulator on a motion."""
-    simulator = simulator_of(machine, params)
-    simulator.go_on(state)
-    return simulator
-
-
 def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
     """Each wait is four times as long as the one before, with no transient to begin with as well: a few looks reach the longest."""
-    absorber = Absorber(restitution=0.728, friction=0.747, gravity=0.404, mass_ratio=0.006)
-    state, looks = np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0]), []
-    simulator = on(absorber, absorber.vector({"amplitude": 1.59760071}), state)
+    absorber, looks = ABSORBER.changed(restitution=0.728, friction=0.747, gravity=0.404), []
+    simulator = simulator_of(absorber, absorber.vector({"amplitude": 1.59760071}))
+    simulator.go_on(np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0]))
     look = simulator.look
     monkeypatch.setattr(simulator, "look", lambda longest: looks.append(1) or look(longest))
     attracted(simulator, 0.0, 32, 1e-7, 1)
@@ -130,23 +130,16 @@ def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
 
 def test_a_cycle_longer_than_looked_for_is_not_waited_for():
     """Late in a cascade: the motion returns after 64 periods, and nearly so after 32. Nothing fades there that could be waited for."""
-    absorber = Absorber(restitution=0.8564451, friction=0.1418559, gravity=0.4553905, mass_ratio=0.006)
-    engine, params = machine(absorber.name), absorber.vector({"amplitude": 1.6727837502689091})
-    state = np.array([0.0, 0.4, 0.3, 1.0, 0.0, 0.0])
-    strobed = []
-    for whole in [20_000.0 + k for k in range(129)]:
-        skip(engine, state, params, whole, 10**9)
+    amplitude = 1.6727837502689091
+    engine, params = machine(CASCADING.name), CASCADING.vector({"amplitude": amplitude})
+    state, strobed = np.array([0.0, 0.4, 0.3, 1.0, 0.0, 0.0]), []
+    for whole in range(20_000, 20_129):
+        skip(engine, state, params, float(whole), 10**9)
         strobed.append(state[[W, RATE]].copy())
     returns = {k: np.abs(strobed[-1] - strobed[-1 - k]).max() for k in (16, 32, 64)}
     assert returns[64] < 1e-11 and 1e-5 < returns[32] < 1e-3 < 10 * returns[16]
     state[TURNS] = 0.0
-    simulator = on(absorber, params, state)
+    simulator = simulator_of(CASCADING, params)
+    simulator.go_on(state)
     assert not attracted(simulator, 0.0, 32, 1e-7, 1).recurrent
     assert simulator.time < 1000.0
-
-
-def test_the_limit_at_which_branches_of_roots_wait_is_said():
-    """The logistic map: zero and 1 - 1/r, of which doublings leave at r = 3 that are not followed."""
-    problem = cv.MapProblem(lambda x, p: [p * x[0] * (1 - x[0])], [0.5], 2.5, parameter="r")
-    graph = cv.atlas(problem, within=(2.4, 3.55), settings={"max_branches": 1})
-    assert "stopped at max_branches = 1" in graph.message and not graph.complete

@@ -11,25 +11,32 @@ from tests.machines import ABSORBER
 pytestmark = pytest.mark.slow
 
 
+def atlas(within, machine=ABSORBER, **options):
+    return cv.atlas(machine, over="amplitude", within=within, **options)
+
+
 @pytest.fixture(scope="module")
 def graph():
-    return cv.atlas(ABSORBER, over="amplitude", within=(1.0, 1.3), values=5, starts=96, depth=1)
+    return atlas((1.0, 1.3), values=5, starts=96, depth=1)
+
+
+def settled(starts, value):
+    """Motions, which of them each start reaches, and whether that is its mirror image."""
+    return ABSORBER.population("amplitude").settle(starts, value)
 
 
 def test_the_orbit_that_no_diagram_has_is_on_the_atlas(graph):
     """`LRtR` attracts from 1.146 to 1.27 and hangs together with no other branch: a simulation of its own finds it."""
     words = {a.word for a in graph.attractors if a.kind == "periodic"}
-    found = find_attractor(ABSORBER, {"phase": 0.0, "w": 0.3, "w_rate": 1.9}, amplitude=1.2)
-    orbit = found.orbit
+    orbit = find_attractor(ABSORBER, {"phase": 0.0, "w": 0.3, "w_rate": 1.9}, amplitude=1.2).orbit
     problem = orbit.problem("amplitude")
-    u, p = orbit.seed(problem)
-    form = problem.canonical(u, p)
+    form, _ = problem.canonical(*orbit.seed(problem))
     on = [
-        b
+        b.description["word"]
         for b in graph
-        if b.range[0] <= 1.2 <= b.range[1] and b.problem.canonical(b.points[0], b.values[0])[0] == form[0]
+        if b.range[0] <= 1.2 <= b.range[1] and b.problem.canonical(b.points[0], b.values[0])[0] == form
     ]
-    assert on and any(b.description["word"] in words for b in on)
+    assert words & set(on)
 
 
 def test_every_periodic_attractor_lies_on_a_stable_real_branch(graph):
@@ -44,15 +51,14 @@ def test_every_periodic_attractor_lies_on_a_stable_real_branch(graph):
 
 def test_shares_agree_with_a_count_one_by_one():
     """40 of the drawn starts are simulated alone by `find_attractor`: the same motions, the same counts."""
-    population = ABSORBER.population("amplitude")
-    starts = population.starts(40, 3, 1.1)
-    motions, index, _ = population.settle(starts, 1.1)
-    alone = []
-    for phase, w, rate in starts:
-        found = find_attractor(ABSORBER, {"phase": phase, "w": w, "w_rate": rate}, amplitude=1.1)
-        alone.append((found.kind, found.periods, found.impacts))
+    starts = ABSORBER.population("amplitude").starts(40, 3, 1.1)
+    motions, index, _ = settled(starts, 1.1)
     mine = [(motions[k].kind, motions[k].periods, motions[k].problem.word.impacts) for k in index]
-    assert mine == alone
+    alone = (
+        find_attractor(ABSORBER, dict(zip(("phase", "w", "w_rate"), start)), amplitude=1.1)
+        for start in starts
+    )
+    assert mine == [(found.kind, found.periods, found.impacts) for found in alone]
 
 
 def test_atlases_with_one_seed_are_equal_to_the_last_bit_on_one_core_and_on_two():
@@ -66,58 +72,56 @@ def test_atlases_with_one_seed_are_equal_to_the_last_bit_on_one_core_and_on_two(
         assert repr(other.attractors) == repr(first.attractors)
         assert list(other.branches) == list(first.branches)
         for one, two in zip(first, other, strict=True):
-            assert np.array_equal(one.points, two.points) and np.array_equal(one.values, two.values)
-            assert np.array_equal(one.multipliers, two.multipliers, equal_nan=True)
+            for name in ("points", "values", "multipliers"):
+                assert np.array_equal(getattr(one, name), getattr(two, name), equal_nan=True)
 
 
 def test_mirror_twins_are_one_motion_with_two_shares():
-    population = ABSORBER.population("amplitude")
-    starts = population.starts(400, 0, 0.8)
-    motions, index, mirrored = population.settle(starts, 0.8)
-    twins = next(k for k, m in enumerate(motions) if m.word == "LR" and not m.problem.symmetric)
-    share = mirrored[index == twins].mean()
-    assert 0.4 < share < 0.6  # by symmetry of the box of starts
-    image = starts.copy()  # the mirror image of every start reaches the mirror image of the motion
-    image[:, 0] = (starts[:, 0] + np.pi) % (2 * np.pi)
-    image[:, 1:] *= -1.0
-    again, other, flipped = population.settle(image, 0.8)
-    place = next(k for k, m in enumerate(again) if m.word == "LR" and not m.problem.symmetric)
-    assert np.array_equal(other == place, index == twins)
-    both = index == twins
-    assert len(set(zip(mirrored[both], flipped[both], strict=True))) == 2
+    starts = ABSORBER.population("amplitude").starts(400, 0, 0.8)
+    image = (starts + [np.pi, 0.0, 0.0]) * [1.0, -1.0, -1.0]
+    image[:, 0] %= 2 * np.pi
+    seen = []
+    for states in (starts, image):
+        motions, index, mirrored = settled(states, 0.8)
+        twins = next(k for k, m in enumerate(motions) if m.word == "LR" and not m.problem.symmetric)
+        seen.append((index == twins, mirrored[index == twins]))
+    (both, one), (again, other) = seen
+    assert 0.4 < one.mean() < 0.6  # by symmetry of the box of starts
+    # the mirror image of every start reaches the mirror image of the motion, whichever of the two is called so
+    assert np.array_equal(both, again)
+    assert np.array_equal(one, other) or np.array_equal(one, ~other)
 
 
 def test_the_look_says_what_a_diagram_lacks():
-    seed = ABSORBER.symmetric_orbit(0.6)
-    graph = cv.diagram(seed, over="amplitude", within=(0.5, 1.3), depth=3)
+    graph = cv.diagram(ABSORBER.symmetric_orbit(0.6), over="amplitude", within=(0.5, 1.3), depth=3)
     found = look(graph, ABSORBER.population("amplitude"))
     assert any(a.value > 1.1 for a in found)
     assert "contvines atlas x.toml" in missing_text(graph, "x.toml")
     assert graph.to_dict()["missing"][0]["share"] > 0
 
 
-def test_graphs_are_merged_without_doubles(graph):
+def test_the_look_says_that_chaos_has_no_branch():
+    """Of the Chebyshev map mu x (1 - x), mu = 4, every cycle is unstable; near it windows are narrower than what the look meets."""
+    logistic = cv.MapProblem(lambda x, mu: mu * x * (1 - x), [0.7], 3.98, parameter="mu")
+    graph = cv.diagram(logistic, within=(3.97, 4.0), depth=0)
+    look(graph, logistic.population())
+    told = missing_text(graph, "x.toml")
+    assert "chaotic" in told and "no branch can hold" in told
+
+
+def test_graphs_are_merged_without_doubles():
     seed = ABSORBER.symmetric_orbit(1.1, stable=True)
-    one = cv.diagram(seed, over="amplitude", within=(1.0, 1.3), depth=0, virtual=False)
-    two = cv.atlas(ABSORBER, over="amplitude", within=(1.0, 1.3), values=[1.2], starts=16, depth=0)
+    one = cv.diagram(seed, over="amplitude", within=(1.0, 1.3), depth=0)
+    two = atlas((1.0, 1.3), values=[1.2], starts=16, depth=0)
     before = len(one.branches)
     called = one.merge(two)
-    assert len(one.branches) > before and set(called.values()) <= {*one.branches, *one.special}
     count = len(one.branches)
+    assert count > before and set(called.values()) <= {*one.branches, *one.special}
     one.merge(two)
     assert len(one.branches) == count
     assert all(label in one.special for b in one for _, label in b.marks)
     with pytest.raises(ValueError, match="two machines"):
-        one.merge(
-            cv.atlas(
-                ABSORBER.changed(friction=0.4),
-                over="amplitude",
-                within=(1.1, 1.2),
-                values=1,
-                starts=4,
-                depth=0,
-            )
-        )
+        one.merge(atlas((1.1, 1.2), ABSORBER.changed(friction=0.4), values=1, starts=4, depth=0))
 
 
 def test_a_merged_branch_ends_at_its_own_points():
@@ -131,16 +135,5 @@ def test_a_merged_branch_ends_at_its_own_points():
         there = one[called[branch.label]]
         if there.label != "B1":
             assert [(i, called[mark]) for i, mark in branch.marks] == list(there.marks)
-            ends = [(0, there.endings[0]), (len(there) - 1, there.endings[1])]
-            for i, ending in ends:
+            for i, ending in zip((0, -1), there.endings):
                 assert ending.point is None or one[ending.point].value == pytest.approx(there.values[i])
-
-
-def test_the_look_says_that_chaos_has_no_branch():
-    """Of the Chebyshev map mu x (1 - x), mu = 4, every cycle is unstable; near it windows are narrower than what the look meets."""
-    logistic = cv.MapProblem(lambda x, mu: mu * x * (1 - x), [0.7], 3.98, parameter="mu")
-    graph = cv.diagram(logistic, within=(3.97, 4.0), depth=0)
-    look(graph, logistic.population())
-    assert "chaotic" in missing_text(graph, "x.toml") and "no branch can hold" in missing_text(
-        graph, "x.toml"
-    )

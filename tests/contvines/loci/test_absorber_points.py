@@ -76,15 +76,3 @@ def test_what_simulation_finds_on_all_sides_of_the_meetings(chart):
         assert sorted(sides) == [1, 2]  # the doubling is there on one side only
         looked_at += 1
     assert looked_at >= 2
-
-
-def test_the_graze_of_the_motion_goes_on_where_its_doubled_one_ends(chart):
-    """At small restitution the motion with two turns grazes before it could double: that border is a locus of its own, on both sides."""
-    if chart.parameters[1] != "restitution":
-        return
-    (meeting,) = [point for point in chart.of_kind("border-flip") if "PD1" in point.on]
-    others = {chart[label].problem.base.periods: chart[label] for label in meeting.on if label != "PD1"}
-    graze, doubled = others.pop(1), others.pop(2)
-    assert not others and np.abs(doubled.values[[0, -1]] - meeting.value).max(axis=1).min() < 1e-11
-    low, high = graze.values[:, 1].min(), graze.values[:, 1].max()
-    assert low < meeting.value[1] - 0.03 and high > meeting.value[1] + 0.03

@@ -49,51 +49,8 @@ def test_stirred_tank_ab():
         p1, p3 = (exact - 1) * mp.exp(-exact), 1 / (exact - 1)
         doubles += [(p1, p3)] if 0.6 < p3 < 2.9 else []
     these(chart, {"cusp": [(np.exp(-2.0), 2.5)], "bogdanov-takens": doubles})
-
-
-def test_fitzhugh_nagumo():
-    """v' = v - v^3/3 - w + I, w' = (v + 0.7 - b w) / 4: folds v^2 = 1 - 1/b, Hopf v^2 = 1 - b/4 up to b = 2; cusp b = 1, v = 0."""
-
-    def current(v, b):
-        return (v + 0.7) / b - v + v**3 / 3
-
-    v0, b0 = -1.4, 1.5
-    problem = cv.AlgebraicProblem(
-        lambda u, p: np.array([u[0] - u[0] ** 3 / 3 - u[1] + p.I, (u[0] + 0.7 - p.b * u[1]) / 4]),
-        [v0, (v0 + 0.7) / b0],
-        {"I": current(v0, b0), "b": b0},
-        parameter="I",
-        spectrum="flow",
-    )
-    graph = cv.diagram(problem, over="I", within=(-1.0, 2.0), depth=0)
-    chart = cv.chart(graph, over="b", within=(0.6, 3.0), bounds=(-2.0, 3.0), regions=False)
-    for locus in chart.loci.values():
-        for (input_, b), u in zip(locus.values, locus.branch.points):
-            assert input_ == pytest.approx(current(u[0], b), abs=1e-11)
-            square = 1 - 1 / b if locus.kind == "fold" else 1 - b / 4
-            assert u[0] ** 2 == pytest.approx(square, abs=1e-9)
-    v = np.sqrt(0.5)
-    these(chart, {"cusp": [(0.7, 1.0)], "bogdanov-takens": [(current(v, 2.0), 2.0), (current(-v, 2.0), 2.0)]})
-
-
-def test_an_oscillator_that_is_locked_to_a_drive():
-    """z' = z (1 - |z|^2) + i d z + K, s = |z|^2: s ((1 - s)^2 + d^2) = K^2; trace 2 - 4 s, determinant (1 - s) (1 - 3 s) + d^2.
-
-    The determinant has a double zero in s at s = 2/3, d^2 = 1/3 (cusp), and vanishes with the trace at s = 1/2, d^2 = 1/4 (a double zero has no frequency).
-    """
-
-    def rates(x, p):
-        growth = 1 - x[0] ** 2 - x[1] ** 2
-        return np.array([growth * x[0] - p.d * x[1] + p.K, growth * x[1] + p.d * x[0]])
-
-    problem = cv.AlgebraicProblem(rates, [1.2, 0.0], {"d": 0.0, "K": 0.52}, parameter="d", spectrum="flow")
-    graph = cv.diagram(problem, within=(-0.6, 0.6), depth=0)
-    points = cv.locus(graph["LP1"], over="K", within=(0.3, 1.0)).points.values()
-    for kind, (d, K) in {"cusp": (np.sqrt(1 / 3), np.sqrt(8 / 27)), "bogdanov-takens": (0.5, 0.5)}.items():
-        found = sorted(point.value for point in points if point.kind == kind)
-        assert [abs(x) for pair in found for x in pair] == pytest.approx([d, K, d, K], abs=1e-9)
-    for point in points:
-        assert "omega" not in coefficients(point)
+    for point in chart.of_kind("bogdanov-takens"):
+        assert "omega" not in coefficients(point)  # a double zero has no frequency
 
 
 def the_only_point(problem, label, span, bounds, slope):

@@ -40,6 +40,7 @@ def test_strong_resonances_on_a_locus_and_its_chart(tmp_path, r):
             label: point for locus in one.loci.values() for label, point in locus.points.items()
         }
     (locus,) = (locus for locus in chart.loci.values() if locus.kind == "neimark-sacker")
+    assert locus.values[:, 0] - r * locus.branch.points[:, 0] == pytest.approx(1.0, abs=1e-10)
     traces = {"R11": 2.0, "R21": -2.0, "R31": -1.0, "R41": 0.0}
     assert set(locus.points) == set(
         traces

@@ -4,6 +4,8 @@ A limit cycle r = 1 with angular speed 1, beside which further states z obey an 
 of g, their multipliers exp(2 pi lambda) with the eigenvalues lambda of these, or minus that where z lives on a band that is twisted once.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -42,27 +44,25 @@ def nerve(x, p):
     return [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])]
 
 
-def folds_of_the_nerve(start, within):
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], start)
-    return cv.diagram(flow, over="I", within=within, depth=1, settings={"max_branches": 2})
-
-
 def canard(e, low, high):
     """Current at which the slow manifolds meet above the fold x = -1, by simulation forwards and backwards."""
 
+    def passes(t, y):
+        return y[0] + 1.0
+
+    passes.terminal = True
+
     def height(current, start, sign):
-        def passes(t, y):
-            return y[0] + 1.0
-
-        def rate(t, y):
-            return [
-                sign * (y[0] - y[0] ** 3 / 3 - y[1] + current),
-                sign * e * (y[0] + 0.7 - 0.8 * y[1]),
-            ]
-
-        passes.terminal = True
-        begin = [start, start - start**3 / 3 + current]
-        found = solve_ivp(rate, (0, 1e4), begin, method="DOP853", rtol=1e-13, atol=1e-14, events=passes)
+        begin, p = [start, start - start**3 / 3 + current], SimpleNamespace(I=current, e=e)
+        found = solve_ivp(
+            lambda t, x: sign * np.array(nerve(x, p)),
+            (0, 1e4),
+            begin,
+            "DOP853",
+            rtol=1e-13,
+            atol=1e-14,
+            events=passes,
+        )
         return found.y_events[0][0][1]
 
     return brentq(lambda i: height(i, -1.6, 1.0) - height(i, -0.1, -1.0), low, high, xtol=1e-14)
@@ -70,7 +70,8 @@ def canard(e, low, high):
 
 def test_folds_of_cycles_go_on_through_a_canard_explosion():
     """Where the equations are singular to rounding along the whole explosion. By symmetry, (x, y, I) to -(x, y, I), both folds have the sum 7/4 of currents."""
-    graph = folds_of_the_nerve({"I": 0.0, "e": 0.08}, (0.0, 2.0))
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})
+    graph = cv.diagram(flow, over="I", within=(0.0, 2.0), depth=1, settings={"max_branches": 2})
     left, right = (cv.locus(graph[label], over="e", within=(0.02, 0.5)) for label in ("LP1", "LP2"))
     assert isinstance(left.problem, Adaptive)  # the mesh and the phase follow the cycles
     for locus in (left, right):
@@ -81,16 +82,6 @@ def test_folds_of_cycles_go_on_through_a_canard_explosion():
         assert left.values[end, 0] + right.values[end, 0] == pytest.approx(1.75, abs=1e-9)
     # of relaxation oscillations the fold is within exp(-c/e) of the canard
     assert left.values[0, 0] == pytest.approx(canard(0.02, 0.299, 0.301), abs=1e-10)
-
-
-def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
-    """At x = -1/2: with f the cubic and b = 0.8 the first Lyapunov coefficient is zero where the third derivative is -b / (1 - e b^2) times the second one's square."""
-    graph = folds_of_the_nerve({"I": 0.70, "e": 0.9374}, (0.70, 0.712))
-    locus = cv.locus(graph["LP1"], over="e", within=(0.9373, 0.938))
-    assert locus.ended[1] == "the motion becomes an equilibrium, at I = 0.7083333333, e = 0.9375"
-    (point,) = locus.points.values()
-    assert point.kind == "generalized-hopf"
-    assert point.value == pytest.approx((17 / 24, 15 / 16), abs=1e-11)
 
 
 def test_a_hopf_point_met_by_cycles_is_followed_as_that_of_the_equilibrium():

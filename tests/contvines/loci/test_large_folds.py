@@ -10,24 +10,26 @@ import contvines as cv
 pytestmark = pytest.mark.slow
 
 
+def rate(u, e):
+    """exp(u / (1 + e u)) and its first and second derivative by u."""
+    r = 1.0 + e * u
+    value = np.exp(u / r)
+    return value, value / r**2, value * (1.0 / r**4 - 2.0 * e / r**3)
+
+
 def extended(line, u, p, e, v):
-    """p and u of the fold of line u + p exp(u / (1 + e u)) near (u, p), with a null vector near v."""
+    """p of the fold of line u + p rate(u) near (u, p), with a null vector near v."""
     n = len(u)
     for _ in range(8):
-        r = 1.0 + e * u
-        rate = np.exp(u / r)
-        first, second = rate / r**2, rate * (1.0 / r**4 - 2.0 * e / r**3)
+        value, first, second = rate(u, e)
         A = line + sp.diags_array(p * first)
-        rest = np.concatenate([line @ u + p * rate, A @ v, [v @ v - 1.0]])
-        matrix = sp.bmat(
-            [
-                [A, None, rate[:, None]],
-                [sp.diags_array(p * second * v), A, (first * v)[:, None]],
-                [None, 2.0 * v[None, :], None],
-            ],
-            format="csc",
-        )
-        step = spsolve(matrix, -rest)
+        rest = np.concatenate([line @ u + p * value, A @ v, [v @ v - 1.0]])
+        rows = [
+            [A, None, value[:, None]],
+            [sp.diags_array(p * second * v), A, (first * v)[:, None]],
+            [None, 2.0 * v[None, :], None],
+        ]
+        step = spsolve(sp.block_array(rows, format="csc"), -rest)
         u, v, p = u + step[:n], v + step[n : 2 * n], p + step[-1]
     return p
 
@@ -35,24 +37,20 @@ def extended(line, u, p, e, v):
 @pytest.mark.parametrize("n, sparse, accuracy", [(60, False, 1e-12), (600, True, 1e-11)])
 def test_ignition_of_a_reaction_with_an_activation_energy(n, sparse, accuracy):
     h = 1.0 / (n + 1)
-    line = (
-        sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]).tocsc() / h**2
-    )
-    dense = line.toarray()
+    line = sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n)).tocsc() / h**2
 
     def jacobian(u, p):
-        r = 1.0 + p.e * u
-        slope = p.p * np.exp(u / r) / r**2
-        return (line + sp.diags_array(slope)).tocsc() if sparse else dense + np.diag(slope)
+        found = line + sp.diags_array(p.p * rate(u, p.e)[1])
+        return found.tocsc() if sparse else found.toarray()
 
     problem = cv.AlgebraicProblem(
-        lambda u, p: line @ u + p.p * np.exp(u / (1.0 + p.e * u)),
+        lambda u, p: line @ u + p.p * rate(u, p.e)[0],
         np.zeros(n),
         {"p": 0.0, "e": 0.0},
         jacobian=jacobian,
         derivative={
-            "p": lambda u, p: np.exp(u / (1.0 + p.e * u)),
-            "e": lambda u, p: -p.p * np.exp(u / (1.0 + p.e * u)) * (u / (1.0 + p.e * u)) ** 2,
+            "p": lambda u, p: rate(u, p.e)[0],
+            "e": lambda u, p: -p.p * u**2 * rate(u, p.e)[1],
         },
     )
     graph = cv.diagram(problem, within=(0.0, 6.0), bounds={f"u{n // 2}": (None, 2.0)}, depth=0)

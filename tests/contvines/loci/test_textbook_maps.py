@@ -4,27 +4,13 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.loci.codimension_two import find
 
 pytestmark = pytest.mark.slow
 
 
-def test_ricker_with_a_delay():
-    # x' = x exp(r - a x - y), y' = x: fixed point x = r / (1 + a), trace 1 - a x, determinant x: Neimark-Sacker at x = 1, r = 1 + a
-    def ricker(u, p):
-        return np.array([u[0] * np.exp(p.r - p.a * u[0] - u[1]), u[0]])
-
-    problem = cv.MapProblem(ricker, [0.6, 0.6], {"r": 0.8, "a": 0.3}, parameter="r")
-    graph = cv.diagram(problem, over="r", within=(0.5, 2.5), depth=0)
-    (point,) = graph.of_kind("neimark-sacker")
-    assert point.value == pytest.approx(1.3, abs=1e-11)
-    locus = cv.locus(point, over="a", within=(0.05, 3.4), bounds=(0.5, 5.0))
-    for r, a in locus.values:
-        assert r == pytest.approx(1 + a, abs=1e-11)
-    # trace 1 - a = 2 cos(angle): resonances 1:3 at a = 2, 1:4 at a = 1, 1:2 at a = 3
-    found = {p.kind: p for _, p in find(locus)}
-    for kind, a in (("resonance-1-4", 1.0), ("resonance-1-3", 2.0), ("resonance-1-2", 3.0)):
-        assert found[kind].value == pytest.approx((1 + a, a), abs=1e-9)
+def places_are(chart, places, close):
+    found = {point.kind: point.value for point in chart.points.values()}
+    assert found == {kind: pytest.approx(place, abs=close) for kind, place in places.items()}
 
 
 def test_burgers_map_where_a_pitchfork_meets_a_flip():
@@ -36,21 +22,17 @@ def test_burgers_map_where_a_pitchfork_meets_a_flip():
     problem = cv.MapProblem(
         burgers, [0.0, 0.0], {"mu": -0.3, "nu": 0.9}, parameter="mu", mirror=[[1, 0], [0, -1]]
     )
-    chart = cv.chart(
-        cv.diagram(problem, within=(-0.5, 0.9), depth=2), over="nu", within=(0.1, 3.9), regions=False
-    )
+    graph = cv.diagram(problem, within=(-0.5, 0.9), depth=2)
+    chart = cv.chart(graph, over="nu", within=(0.1, 3.9), regions=False)
     lines = {"symmetry-breaking": (0, 0.0), "neimark-sacker": (0, 0.5), "period-doubling": (1, 2.0)}
-    assert sorted(locus.kind for locus in chart.loci.values()) == sorted(
-        lines
-    )  # where branches cross none folds
+    # where branches cross none folds
+    assert sorted(locus.kind for locus in chart.loci.values()) == sorted(lines)
     for locus in chart.loci.values():
         axis, place = lines[locus.kind]
         assert np.abs(locus.values[:, axis] - place).max() < 1e-11
         assert np.ptp(locus.values[:, 1 - axis]) > 1.39  # from one end to the other
     expected = {"fold-flip": (0.0, 2.0), "resonance-1-4": (0.5, 2.0), "resonance-1-3": (0.5, 3.0)}
-    assert {point.kind for point in chart.points.values()} == set(expected)
-    for point in chart.points.values():
-        assert point.value == pytest.approx(expected[point.kind], abs=1e-9)
+    places_are(chart, expected, 1e-9)
 
 
 def test_truncated_normal_form_of_the_resonance_1_2():
@@ -73,5 +55,4 @@ def test_truncated_normal_form_of_the_resonance_1_2():
     for label, condition in (("NS1", lambda b2, b1: b1 + b2), ("BP1", lambda b2, b1: b1 + 2 * b2 - 4)):
         assert np.abs([condition(*value) for value in chart.loci[label].values]).max() < 1e-11
     places = {"resonance-1-1": (4, -4), "resonance-1-2": (0, 0), "resonance-1-3": (1, -1), "resonance-1-4": (2, -2), "fold-flip": (2, 0)}  # fmt: skip
-    found = {point.kind: point.value for point in chart.points.values()}
-    assert found == {kind: pytest.approx(place, abs=1e-10) for kind, place in places.items()}
+    places_are(chart, places, 1e-10)
