@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.shared.motions import marginal_text
 from tests.contvines.loci.systems import bautin
 from tests.machines import ABSORBER
 
@@ -39,3 +40,8 @@ def test_motions_of_a_machine(run):
     assert "(marginal: a multiplier is 1)" in run("orbit", "motions.vines", "LP1")[1]
     locus = cv.locus(graph["LP1"], over="restitution", within=(0.7, 0.8))
     assert {locus.orbit(i).stable for i in range(len(locus))} == {None}
+
+
+def test_a_pair_of_multipliers_is_told():
+    pair = np.array([0.6 + 0.8j, 0.6 - 0.8j, 0.3])
+    assert marginal_text(pair) == "marginal: a pair of multipliers is on the unit circle"

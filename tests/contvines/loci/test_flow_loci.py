@@ -84,6 +84,17 @@ def test_folds_of_cycles_go_on_through_a_canard_explosion():
     assert left.values[0, 0] == pytest.approx(canard(0.02, 0.299, 0.301), abs=1e-10)
 
 
+def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
+    """At x = -1/2: with f the cubic and b = 0.8 the first Lyapunov coefficient is zero where the third derivative is -b / (1 - e b^2) times the second one's square."""
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.70, "e": 0.9374})
+    graph = cv.diagram(flow, over="I", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
+    locus = cv.locus(graph["LP1"], over="e", within=(0.9373, 0.938))
+    assert locus.ended[1] == "the motion becomes an equilibrium, at I = 0.7083333333, e = 0.9375"
+    (point,) = locus.points.values()
+    assert point.kind == "generalized-hopf"
+    assert point.value == pytest.approx((17 / 24, 15 / 16), abs=1e-11)
+
+
 def test_a_hopf_point_met_by_cycles_is_followed_as_that_of_the_equilibrium():
     """1 - v^2 = 0.8 e at rest with w = (v + 0.7) / 0.8 and I = w - v + v^3 / 3."""
     flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})

@@ -35,6 +35,19 @@ def test_burgers_map_where_a_pitchfork_meets_a_flip():
     places_are(chart, expected, 1e-9)
 
 
+def test_kopels_duopoly_where_branches_cross_and_do_not_fold():
+    # x = y = 1 - 1/mu, multipliers 1 - rho +- rho (mu - 2): the pitchfork mu = 3 meets the doubling at rho = 1
+    def kopel(u, p):
+        return u * (1 - p.rho) + p.rho * p.mu * u[::-1] * (1 - u[::-1])
+
+    problem = cv.MapProblem(kopel, [0.5, 0.5], {"mu": 2.0, "rho": 0.9}, parameter="mu")
+    graph = cv.diagram(problem, over="mu", within=(2.0, 3.4), depth=0)
+    chart = cv.chart(graph, over="rho", within=(0.8, 1.2), depth=1, regions=False)
+    assert all(locus.kind != "fold" for locus in chart.loci.values())
+    (meeting,) = chart.of_kind("fold-flip")
+    assert meeting.value == pytest.approx((3.0, 1.0), abs=1e-8)
+
+
 def test_truncated_normal_form_of_the_resonance_1_2():
     """The map of MatContM's tutorial (Govaerts, Khoshsiar Ghaziani, Kuznetsov, Meijer), with C = D = 1, by closed forms and a chart of default depth.
 

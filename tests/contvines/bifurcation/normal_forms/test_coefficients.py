@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -104,7 +105,13 @@ def test_all_cells_of_a_line_at_once():
     assert abs(point.value - (1.0 + A**2)) < 1e-9
     assert point.criticality == "supercritical"
     assert point.coefficient == pytest.approx(of_one_cell(A) / m, rel=1e-6)
-    proper(point, jacobian(point.u, point.value), 1e-7)
+
+
+def test_eigenvectors_of_a_sparse_jacobian():
+    second = sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(30, 30)).tocsc()
+    own = {"jacobian": lambda u, p: second, "derivative": lambda u, p: np.ones(30), "leading": 3}
+    point = flow(lambda u, p: second @ u + p, np.zeros(30), 0.0, (0.0, 1.0), **own).of_kind("end")[0]
+    proper(point, second, 1e-7)
 
 
 @settings(max_examples=15)
