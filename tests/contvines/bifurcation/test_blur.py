@@ -1,9 +1,12 @@
-"""Stated errors of branch points cover what rounding of the matrices does to their places, and not very much more."""
+"""Stated errors of branch points cover what rounding of the matrices does to their places, and not very much more; what has no place is not told."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.bifurcation.segment_search import SegmentSearch
 
 
 @pytest.mark.parametrize("growth", [5.0, 10.0, 20.0, 30.0])
@@ -31,3 +34,20 @@ def test_errors_of_branch_points_where_all_entries_cancel_are_bounds(start):
     assert len(points) == 2
     for point, true in zip(sorted(points, key=lambda point: point.value), (1.0, 5.0 / 3.0), strict=True):
         assert abs(point.value - true) <= point.location_error < 1e-9
+
+
+@pytest.mark.parametrize(("error", "told"), [(1e-3, 1), (1.0, 1), (2.1, 0), (np.inf, 0)])
+def test_a_point_whose_error_is_longer_than_the_interval_is_not_told(error, told, monkeypatch):
+    """x (x - p) = 0 has a branch point at p = 0, which is said to be somewhere within the interval, or anywhere."""
+    search = SegmentSearch.search
+
+    def vaguely(self, *args, **options):
+        found = search(self, *args, **options)
+        return [replace(e, error=error) if e.kind == "branch-point" else e for e in found]
+
+    monkeypatch.setattr(SegmentSearch, "search", vaguely)
+    monkeypatch.setattr("contvines.bifurcation.consistency.inexact", lambda segment, event: False)
+    graph = cv.diagram(
+        cv.AlgebraicProblem(lambda u, p: u * (u - p), [0.0], -0.7), within=(-1.0, 1.0), depth=0
+    )
+    assert len(graph.of_kind("branch-point")) == told

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.shared.motions import marginal_text
+from contvines.shared.motions import marginal_text, onto_circle
 from tests.contvines.loci.systems import bautin
 from tests.machines import ABSORBER
 
@@ -42,6 +42,8 @@ def test_motions_of_a_machine(run):
     assert {locus.orbit(i).stable for i in range(len(locus))} == {None}
 
 
-def test_a_pair_of_multipliers_is_told():
+def test_multipliers_alone():
+    """Those of a pair are told; none is put on the circle that is not near to it."""
     pair = np.array([0.6 + 0.8j, 0.6 - 0.8j, 0.3])
     assert marginal_text(pair) == "marginal: a pair of multipliers is on the unit circle"
+    assert np.array_equal(onto_circle(np.array([1.2, 0.5]), 1e-4), [1.2, 0.5])

@@ -5,8 +5,8 @@ import shutil
 import pytest
 
 import contvines as cv
-from orbits import Cavity, Coupled
-from tests.machines import ABSORBER
+from orbits import Cavity
+from tests.machines import ABSORBER, COUPLED
 from tools.attractors.drawn import drawn
 from tools.attractors.truth import listed_twice, on_atlas, shares, witness
 
@@ -20,8 +20,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(shutil.which("gcc") is None, 
          (0.5758, 0.9058, 1.0892), 400),
         (Cavity(restitution_left=0.6, restitution_right=0.8, friction_left=0.1, friction_right=0.3, gravity=0.2, slope=0.1,
                 mass_ratio=0.006), "amplitude", (0.5, 1.2), (0.55, 0.8, 1.05), 200),
-        (Coupled(forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211), "frequency",
-         (0.990, 0.994), (0.9905, 0.9935), 24),
+        (COUPLED, "frequency", (0.990, 0.994), (0.9905, 0.9935), 24),
     ],
     ids=["absorber", "cavity", "coupled"],
 )  # fmt: skip

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.loci.systems import cusp
 from tests.machines import ABSORBER
 
 
@@ -80,12 +81,10 @@ def test_begun_where_it_is_known_to_lie(kind, problem, f, n, start):
 
 
 def test_begun_at_a_cusp_on_a_locus():
-    """x' = b + (a - 1/3) x - x^3: at the cusp a = 1/3, b = 0; against a a pitchfork, against b nothing."""
-    flow = cv.FlowProblem(
-        lambda x, p: [p.b + (p.a - 1 / 3) * x[0] - x[0] ** 3], [-1.0], {"b": -0.5, "a": 1.0}
-    )
+    """At a = 1/3, b = 0: against a it is a pitchfork, against b nothing."""
+    flow = cv.FlowProblem(cusp, [-1.0], {"b": -0.5, "a": 1.0})
     locus = cv.locus(cv.diagram(flow, over="b", within=(-1, 1))["LP1"], over="a", within=(0, 2))
-    cusp = locus.points["CP1"]
-    across, along = cv.diagram(cusp, over="a", within=(0.0, 1.0)), cv.diagram(cusp, within=(-0.5, 0.5))
+    point = locus.points["CP1"]
+    across, along = cv.diagram(point, over="a", within=(0.0, 1.0)), cv.diagram(point, within=(-0.5, 0.5))
     assert values(across, "branch-point") == pytest.approx([1 / 3], abs=1e-9)
     assert {p.kind for p in along.special.values()} == {"end"} and len(along) == 1

@@ -46,3 +46,8 @@ BAZYKIN_PLACE = 6.26576552895236307, 3.60155393683666477
 def henon(x, p):
     """x' = 1 + y - a x^2, y' = b x."""
     return np.array([1 + x[1] - p.a * x[0] ** 2, p.b * x[0]])
+
+
+def cusp(x, p):
+    """x' = b + (a - 1/3) x - x^3: folds from a = 1/3 on, where their cusp is, at b = 0."""
+    return [p.b + (p.a - 1 / 3) * x[0] - x[0] ** 3]

@@ -5,7 +5,7 @@ import pytest
 
 import contvines as cv
 import orbits
-from tests.contvines.loci.systems import bautin
+from tests.contvines.loci.systems import bautin, cusp
 
 
 def test_folds_of_cycles_end_at_the_generalized_hopf_point():
@@ -23,10 +23,7 @@ def test_folds_of_cycles_end_at_the_generalized_hopf_point():
 
 
 def test_a_table_has_no_digits_that_tell_a_locus_from_its_own_point():
-    """x' = b + (a - 1/3) x - x^3: folds from a = 1/3 on, where their cusp is."""
-    flow = cv.FlowProblem(
-        lambda x, p: [p.b + (p.a - 1 / 3) * x[0] - x[0] ** 3], [-1.0], {"b": -0.5, "a": 1.0}
-    )
+    flow = cv.FlowProblem(cusp, [-1.0], {"b": -0.5, "a": 1.0})
     chart = cv.chart(cv.diagram(flow, over="b", within=(-1, 1)), "a", (0, 2))
     assert chart.points["CP1"].value == pytest.approx((0.0, 1 / 3), abs=1e-10)
     rows = [line.split() for line in str(chart).splitlines()]
