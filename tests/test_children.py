@@ -27,10 +27,9 @@ def test_it():
 
 def suite(tmp_path, end, *words):
     """A suite of one test below a folder `tests` with our conftest, in a process of its own that ignores Ctrl-C."""
-    here = os.path.dirname(__file__)
     folder = tmp_path / "tests"
     folder.mkdir()
-    os.symlink(os.path.join(here, "children.py"), folder / "children.py")
+    (folder / "children.py").symlink_to(Path(__file__).with_name("children.py"))
     (folder / "conftest.py").write_text(
         "from tests.children import adopt, no_child_survives_its_test\nadopt()\n"
     )
@@ -48,13 +47,6 @@ def suite(tmp_path, end, *words):
     )
 
 
-def pid_of(process):
-    for line in process.stdout:
-        if line.startswith("child"):
-            return int(line.split()[1])
-    raise AssertionError("the test has not begun")
-
-
 def gone(pid):
     for _ in range(500):
         try:
@@ -66,35 +58,25 @@ def gone(pid):
     return False
 
 
-@pytest.mark.parametrize("end", ["pass", "raise AssertionError"])
-def test_a_child_ends_with_its_test(tmp_path, end):
+@pytest.mark.parametrize(
+    ("end", "blow", "status"),
+    [
+        ("pass", None, 0),
+        ("raise AssertionError", None, 1),
+        ("child.wait()", signal.SIGKILL, -signal.SIGKILL),
+        # the child takes an interrupt, though the suite ignores it; the suite, too
+        ("child.send_signal(2); assert child.wait(60) in (-2, 1, 130)", None, 0),
+        ("import time; time.sleep(600)", signal.SIGINT, 2),
+    ],
+)
+def test_a_child_ends_with_its_test_or_its_suite(tmp_path, end, blow, status):
     process = suite(tmp_path, end)
-    assert gone(pid_of(process))
-    process.communicate()
-    assert process.returncode == (0 if end == "pass" else 1)
-
-
-def test_a_child_ends_with_a_suite_that_is_killed(tmp_path):
-    process = suite(tmp_path, "child.wait()")
-    pid = pid_of(process)
-    process.kill()
-    assert gone(pid)
-
-
-def test_a_child_takes_an_interrupt_though_the_suite_ignores_it(tmp_path):
-    end = "child.send_signal(2); assert child.wait(60) in (-2, 1, 130)"
-    process = suite(tmp_path, end)
-    assert gone(pid_of(process))
-    process.communicate()
-    assert process.returncode == 0
-
-
-def test_an_interrupt_reaches_a_suite_that_ignored_it(tmp_path):
-    process = suite(tmp_path, "import time; time.sleep(600)")
-    pid_of(process)
-    process.send_signal(signal.SIGINT)
+    begun = next(line for line in process.stdout if line.startswith("child"))
+    if blow:
+        process.send_signal(blow)
+    assert gone(int(begun.split()[1]))
     process.communicate(timeout=60)
-    assert process.returncode == 2  # pytest: interrupted
+    assert process.returncode == status
 
 
 def test_a_test_that_hangs_is_named_and_its_process_ends(tmp_path, pytestconfig):

@@ -1,47 +1,43 @@
 """The documented compiled problem: C functions, followed by the native continuation loop."""
 
-import importlib.util
 import json
+import runpy
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import contvines as cv
 from contvines.core.library import library
+from tools.demos.make_table import TABLE
 
-pytestmark = pytest.mark.slow
-
-ROOT = Path(__file__).parents[1]
-needed = pytest.mark.skipif(
-    shutil.which("cc") is None or library() is None, reason="no C compiler, or no native core"
-)
+lacking = shutil.which("cc") is None or library() is None
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(lacking, reason="no C compiler, or no native core"),
+]
+EXAMPLES = Path(__file__).parents[1] / "examples" / "compiled"
 
 
 def example_of(name):
-    """The module of an example."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / "compiled" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    """The names of an example."""
+    return SimpleNamespace(**runpy.run_path(str(EXAMPLES / f"{name}.py")))
 
 
-@needed
 @pytest.mark.parametrize("in_native", [True, False])
 def test_a_table_of_c_functions_is_followed(tmp_path, monkeypatch, in_native):
     """Against the solves in thirty digits of the same equations (folds with a singular Jacobian, Hopf with zero trace); without the native core, too."""
     monkeypatch.setattr("contvines.continuation.engine.native", lambda: in_native)
     example = example_of("reaction")
     graph = cv.diagram(example.Reaction(example.compiled(tmp_path)), within=(0.0, 0.15))
-    table = ROOT / "tools" / "demos" / "table.json"
-    expected = sorted((row["kind"], row["value"]) for row in json.loads(table.read_text())["ab"])
+    expected = sorted((row["kind"], row["value"]) for row in json.loads(TABLE.read_text())["ab"])
     found = sorted((p.kind, p.value) for p in graph.special.values() if p.kind != "end")
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]
     assert [value for _, value in found] == pytest.approx([value for _, value in expected], abs=1e-12)
 
 
-@needed
 def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
     example = example_of("lorenz")
     flow = example.flow(example.compiled(tmp_path))
@@ -60,7 +56,6 @@ def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
     assert np.allclose(field.slope(x, 20.0), np.column_stack([0 * x[:, 0], x[:, 0], 0 * x[:, 0]]))
 
 
-@needed
 def test_problems_over_several_parameters_share_a_workspace(tmp_path):
     """As along loci: x' = s (y - x) alone has s, y' alone has r; residuals are linear in both."""
     example = example_of("lorenz")

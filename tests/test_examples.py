@@ -1,160 +1,142 @@
-"""Every example runs, and its numbers are those of the literature."""
+"""Every example and every teaching study runs, and its special points are those of closed forms and of the literature."""
 
-import importlib.util
+import csv
 import runpy
+from math import hypot, pi, sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from contvines.store import load
 from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-SCRIPTS = {"pitchfork", "henon", "absorber", "neutral_saddle"}
-STUDIES = {"friction", "friction_low", "frequency", "bouncing_ball"}
 
 
-def example(name):
-    spec = importlib.util.spec_from_file_location(f"example_{name}", EXAMPLES / f"{name}.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+@pytest.fixture
+def script(tmp_path, monkeypatch, capsys):
+    """The names of an example that has run as a user runs it."""
+    monkeypatch.chdir(tmp_path)
+
+    def names(name):
+        found = runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+        assert "branches in" in capsys.readouterr().out
+        return found
+
+    return names
 
 
 def values(graph, kind):
     return sorted(point.value for point in graph.of_kind(kind))
 
 
-def test_no_example_is_forgotten():
-    assert {p.stem for p in EXAMPLES.glob("*.py")} == SCRIPTS
-    assert {p.stem for p in EXAMPLES.glob("*.toml")} == STUDIES
+def absorber(place, friction=0.5, gravity=0.211):
+    """Amplitude of the fold (LP1) or the symmetry breaking (SB1) of the symmetric motion LR of the absorber: C^2 from its closed form.
+
+    C^2 = (1 - pi beta/2)^2 + (R beta + H)^2: d/d beta = 0 at the fold.
+    """
+    R, H = (1 - 0.76) / (1 + 0.76), pi / 2 * 1.006 * friction * gravity
+    beta = (2 * pi - 4 * R * H) / (pi**2 + (4 * R**2 if place == "LP1" else -4))
+    return hypot(1 - pi * beta / 2, R * beta + H)
 
 
-@pytest.mark.parametrize("name", sorted(SCRIPTS))
-def test_scripts_run_as_a_user_runs_them(name, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
-    assert "branches in" in capsys.readouterr().out
+def test_the_closed_forms_are_those_that_are_printed():
+    assert (absorber("LP1") ** 2, absorber("SB1") ** 2) == pytest.approx((0.0637942, 0.5282903), abs=5e-8)
 
 
-def test_pitchfork_and_its_perturbed_twin():
-    module = example("pitchfork")
-    perfect = module.perfect()
+def test_pitchfork_and_its_perturbed_twin(script):
+    names = script("pitchfork")
+    perfect = names["perfect"]()
     broken = values(perfect, "symmetry-breaking") + values(perfect, "branch-point")
     assert broken == pytest.approx([0.0], abs=1e-10)
     assert len(perfect.branches) == 2  # the mirror image is recorded, not traced
     h = 0.02
-    perturbed = module.perturbed(h)
+    perturbed = names["perturbed"](h)
     # x' = h + p x - x^3: the fold of the detached branch lies at p = 3 (h/2)^(2/3) (Strogatz, section 3.6)
     assert values(perturbed, "fold") == pytest.approx([3 * (h / 2) ** (2 / 3)], abs=1e-10)
     assert values(perturbed, "branch-point") == []
 
 
-def test_henon_cascade():
-    graph = example("henon").main()
+def test_henon_cascade(script):
     b = 0.3
-    doublings = values(graph, "period-doubling")
-    assert doublings[0] == pytest.approx(0.75 * (1 - b) ** 2, abs=1e-10)
-    assert doublings[1] == pytest.approx((1 - b) ** 2 + (1 + b) ** 2 / 4, abs=1e-10)
+    first, second, third = values(script("henon")["graph"], "period-doubling")[:3]
+    assert first == pytest.approx(0.75 * (1 - b) ** 2, abs=1e-10)
+    assert second == pytest.approx((1 - b) ** 2 + (1 + b) ** 2 / 4, abs=1e-10)
     # later ones contract by Feigenbaum's ratio, 4.669 in the limit
-    ratio = (doublings[1] - doublings[0]) / (doublings[2] - doublings[1])
-    assert ratio == pytest.approx(4.669, rel=0.2)
+    assert (second - first) / (third - second) == pytest.approx(4.669, rel=0.2)
 
 
-def absorber_closed_forms(restitution, friction, gravity, mass_ratio):
-    """C^2 of fold and symmetry breaking of the symmetric orbit LR at Omega = 1, from its closed form."""
-    from math import pi
-
-    R = (1 - restitution) / (1 + restitution)
-    H = pi / 2 * (1 + mass_ratio) * friction * gravity
-
-    def square(beta):
-        return (1 - pi * beta / 2) ** 2 + (R * beta + H) ** 2
-
-    top = 2 * pi - 4 * R * H
-    return square(top / (pi**2 + 4 * R**2)), square(top / (pi**2 - 4))
+def test_scripts(script, tmp_path):
+    assert {p.stem for p in EXAMPLES.glob("*.py")} == {"pitchfork", "henon", "absorber", "neutral_saddle"}
+    script("neutral_saddle")
+    script("absorber")
+    graph = load(tmp_path / "absorber.vines", problems=False)
+    for label in ("LP1", "SB1"):
+        assert graph[label].value == pytest.approx(absorber(label), rel=1e-9)
+    assert (tmp_path / "absorber.png").exists()
 
 
-def test_absorber(tmp_path):
-    graph = example("absorber").main(tmp_path / "a.vines", tmp_path / "a.png")
-    fold, breaking = absorber_closed_forms(0.76, 0.5, 0.211, 0.006)
-    # printed to seven digits in the literature as well: 0.0637942 and 0.5282903
-    assert (fold, breaking) == pytest.approx((0.0637942, 0.5282903), abs=5e-8)
-    assert values(graph, "fold")[0] ** 2 == pytest.approx(fold, abs=1e-9)
-    (point,) = graph.of_kind("symmetry-breaking")
-    assert point.value**2 == pytest.approx(breaking, abs=1e-9)
-    assert (tmp_path / "a.png").exists()
+R = 0.8
+FOLD = pi * (1 - R) / (1 + R)
+SLIP = 1.006 * 0.5 * 0.211
+PAPER = {label: absorber(label) for label in ("LP1", "SB1")}
+# the ball lands when the table gives back what a bounce loses; multiplier -1 of the linearised return
+BALL = {"LP1": FOLD, "PD1": hypot(FOLD, 2 * (1 + R * R) / (1 + R) ** 2)}
+STUDIES = {
+    "friction": PAPER,
+    "friction_low": {label: absorber(label, 0.1, 0.422) for label in PAPER},
+    "frequency": {},
+    "bouncing_ball": {"PD1": BALL["PD1"]},
+    "teaching/absorber": PAPER,
+    "teaching/bouncing_ball": BALL,
+    # the linear response reaches the wall
+    "teaching/impact_oscillator": {"WG1": hypot(1 - 0.8**2, 2 * 0.05 * 0.8)},
+    # the floor's acceleration reaches friction; sliding without rest (Den Hartog 1931, without a spring)
+    "teaching/stick_slip": {"ST1": SLIP, "ST2": SLIP * sqrt(1 + pi**2 / 4)},
+    "teaching/own": {"HB1": 2.0},
+}
 
 
-@pytest.mark.parametrize(("name", "machine"), [("friction", (0.5, 0.211)), ("friction_low", (0.1, 0.422))])
-def test_studies(name, machine, tmp_path, monkeypatch):
-    from contvines.command.cli import main
-    from contvines.store import load
-
-    monkeypatch.chdir(tmp_path)
-    main_status = 0
-    try:
-        main(["diagram", str(EXAMPLES / f"{name}.toml"), "--quiet", "--plot", "a.png"])
-    except SystemExit as end:
-        main_status = end.code or 0
-    assert main_status == 0
-    graph = load(f"{name}.vines", problems=False)
-    fold, breaking = absorber_closed_forms(0.76, *machine, 0.006)
-    assert values(graph, "fold")[0] ** 2 == pytest.approx(fold, abs=1e-9)
-    assert values(graph, "symmetry-breaking")[0] ** 2 == pytest.approx(breaking, abs=1e-9)
-    assert all(branch.real for branch in graph.branches.values())
-    asymmetric = [s.target for s in graph.switches if s.kind == "symmetry-breaking"]
-    assert len(asymmetric) == 1
-    assert graph.special[next(s.point for s in graph.switches if s.kind == "symmetry-breaking")].mirror
-
-
-def test_a_ball_on_a_sinusoidal_table(tmp_path, monkeypatch, capsys):
-    import csv
-    import json
-    from math import hypot, pi
-
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    """Runs a verb on a study of the examples."""
     from contvines.command.cli import main
 
     monkeypatch.chdir(tmp_path)
-    for command in (
-        ["diagram", str(EXAMPLES / "bouncing_ball.toml"), "--quiet", "--plot", "a.png"],
-        ["sweep", str(EXAMPLES / "bouncing_ball.toml"), "--quiet"],
-        ["orbit", "bouncing_ball.vines", "PD1", "--json"],
-    ):
+
+    def run(verb, name, *options):
         with pytest.raises(SystemExit) as end:
-            main(command)
+            main([verb, str(EXAMPLES / f"{name}.toml"), "--quiet", *options])
         assert not end.value.code
-    shown = json.loads(capsys.readouterr().out)
-    # table acceleration over gravity, one bounce a period: begins at pi (1 - r)/(1 + r), doubles where the ball's
-    # linearised return has -1 (derived in tests/orbits/machines/test_cavity.py)
-    r = 0.8
-    fold = pi * (1 - r) / (1 + r)
-    flip = hypot(fold, 2 * (1 + r * r) / (1 + r) ** 2)
-    assert shown["parameters"]["amplitude"] == pytest.approx(flip, abs=1e-12)
-    with open("bouncing_ball-sweep.csv") as file:
-        rows = list(csv.DictReader(file))
-    # from rest the ball lies on the table until the table falls faster than the ball
-    assert all((row["attractor"] == "stuck") == (float(row["value"]) < 1.0) for row in rows)
+
+    return run
 
 
-def test_frequency_response_of_the_coupled_machine(tmp_path, monkeypatch):
-    from contvines.command.cli import main
-    from contvines.store import load
+@pytest.mark.parametrize("name", STUDIES)
+def test_special_points_of_studies_are_the_closed_forms(name, study):
+    if name == "teaching/impact_oscillator":
+        pytest.importorskip("heyoka")
+    study("diagram", name, "--no-look", "--plot", "a.png")
+    graph = load(f"{Path(name).stem}.vines", trust=True)
+    found = {label: graph.special[label].value for label in STUDIES[name]}
+    assert found == pytest.approx(STUDIES[name], rel=1e-9)
+    assert graph.finished and all(branch.real for branch in graph.branches.values())
+    if "SB1" in found:
+        assert [s.point for s in graph.switches if s.kind == "symmetry-breaking"] == ["SB1"]
+        assert graph.special["SB1"].mirror
+    if name == "teaching/own":  # the period of the first cycles, 2 pi / a
+        assert graph["B2"].measure("period")[0] == pytest.approx(2 * pi, rel=1e-3)
+    if name == "frequency":
+        check_frequency_response(graph)
 
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as end:
-        main(["diagram", str(EXAMPLES / "frequency.toml"), "--quiet"])
-    assert not end.value.code
-    graph = load("frequency.vines")
-    assert graph.finished
-    assert all(branch.real for branch in graph.branches.values())
-    words = {branch.description["word"] for branch in graph.branches.values()}
-    assert {"LR", "tt"} <= words
+
+def check_frequency_response(graph):
+    assert {"LR", "tt"} <= {branch.description["word"] for branch in graph}
     # event-driven simulation, which knows nothing of the continuation, follows a stable orbit of every stable branch
-    for branch in graph.branches.values():
+    for branch in graph:
         inside = [i for i in range(1, len(branch) - 1) if branch.stable[i - 1 : i + 2].all()]
         if inside:
             assert branch.orbit(inside[len(inside) // 2]).replay() < 1e-6, branch
@@ -168,3 +150,18 @@ def test_frequency_response_of_the_coupled_machine(tmp_path, monkeypatch):
     for point in pairs:
         seen = exact(point.orbit).multipliers
         assert np.abs(np.abs(seen[np.abs(seen.imag) > 0.05]) - 1.0).max() < 1e-9
+
+
+def test_every_study_is_checked_and_every_teaching_study_told():
+    page = (EXAMPLES.parent / "docs" / "teaching.md").read_text(encoding="utf-8")
+    paths = [*EXAMPLES.glob("*.toml"), *EXAMPLES.glob("teaching/*.toml")]
+    names = {path.relative_to(EXAMPLES).with_suffix("").as_posix() for path in paths}
+    assert names == set(STUDIES)
+    assert all(f"examples/{name}.toml" in page for name in names if "teaching/" in name)
+
+
+def test_a_ball_on_a_table_begins_to_bounce_where_the_table_falls_faster_than_it(study):
+    study("sweep", "bouncing_ball")
+    with open("bouncing_ball-sweep.csv") as file:
+        rows = list(csv.DictReader(file))
+    assert rows and all((row["attractor"] == "stuck") == (float(row["value"]) < 1.0) for row in rows)

@@ -2,7 +2,10 @@
 
 import ast
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
+
+import networkx as nx
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("contvines", "orbits")
@@ -34,11 +37,6 @@ def module_of(path):
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-@cache
-def parsed(path):
-    return ast.parse(path.read_text())
-
-
 def of_methods(tree):
     """All parts of the methods of a file's classes."""
     for thing in tree.body:
@@ -50,60 +48,39 @@ def of_methods(tree):
 
 def imports(path, known):
     """Files of both packages that a file imports, at its top, inside functions (methods of `HELD` aside), or for types only."""
-    own = module_of(path)
+    own, tree = module_of(path), ast.parse(path.read_text())
     package = own if path.name == "__init__.py" else own.rpartition(".")[0]
-    comfort = set(of_methods(parsed(path))) if own in HELD else set()
-    for node in ast.walk(parsed(path)):
-        if node in comfort:
-            continue
+    comfort = set(of_methods(tree)) if own in HELD else set()
+    for node in set(ast.walk(tree)) - comfort:
+        wanted = []
         if isinstance(node, ast.Import):
             wanted = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                parts = package.split(".")
-                base = ".".join([*parts[: len(parts) - node.level + 1], *([base] if base else [])])
+            base = resolve_name("." * node.level + (node.module or ""), package)
             names = [f"{base}.{alias.name}" for alias in node.names]
             wanted = [name if name in known else base for name in names]
-        else:
-            continue
         yield from (name for name in wanted if name in known and name != own)
 
 
-def in_circles(needs):
-    """Names in or above a circle, found by removing what needs nothing that is left, again and again."""
-    needs = {name: set(wanted) for name, wanted in needs.items()}
-    while free := [name for name, wanted in needs.items() if not wanted & needs.keys()]:
-        for name in free:
-            del needs[name]
-    return sorted(needs)
-
-
 @cache
-def needs_of_files():
-    paths = [path for package in PACKAGES for path in (ROOT / package).rglob("*.py")]
-    known = {module_of(path) for path in paths}
-    return {module_of(path): frozenset(imports(path, known)) for path in paths}
+def needs():
+    """Pairs of files, of which the first needs the second."""
+    files = {module_of(path): path for package in PACKAGES for path in (ROOT / package).rglob("*.py")}
+    return {(name, other) for name, path in files.items() for other in imports(path, files)}
+
+
+def in_circles(pairs):
+    return [circle for circle in nx.strongly_connected_components(nx.DiGraph(pairs)) if len(circle) > 1]
 
 
 def test_no_two_files_need_one_another():
-    needs = needs_of_files()
-    assert sum(map(len, needs.values())) > 1000  # they were read
-    assert not in_circles(needs)
+    assert len(needs()) > 1000  # they were read
+    assert not in_circles(needs())
 
 
 def test_no_two_rooms_need_one_another():
     """Folder by folder: what lies in it, folders taken as a whole, has an order from bottom to top."""
-    files = needs_of_files()
-    folders = {name.rpartition(".")[0] for name in files} - {""}
-    for folder in folders:
+    for folder in {name.rpartition(".")[0] for pair in needs() for name in pair} - {""}:
+        inside = [pair for pair in needs() if all(name.startswith(f"{folder}.") for name in pair)]
         depth = folder.count(".") + 2
-        rooms: dict[str, set[str]] = {}
-        for name, wanted in files.items():
-            if name.startswith(f"{folder}."):
-                room = ".".join(name.split(".")[:depth])
-                there = {
-                    ".".join(other.split(".")[:depth]) for other in wanted if other.startswith(f"{folder}.")
-                }
-                rooms.setdefault(room, set()).update(there - {room})
-        assert not in_circles(rooms), folder
+        assert not in_circles([[".".join(name.split(".")[:depth]) for name in pair] for pair in inside])

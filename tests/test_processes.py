@@ -16,10 +16,8 @@ def never(place):
     raise AssertionError(f"piece {place} is said to be lost")
 
 
-def run(program, *words):
-    return subprocess.run(
-        [sys.executable, "-c", program, *map(str, words)], capture_output=True, text=True, timeout=300
-    )
+def run(program):
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=300)
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -28,10 +26,7 @@ def test_every_piece_is_done_once_and_not_here(count):
     assert sorted((place, value) for place, (value, _) in found) == [(n, n * n) for n in range(40)]
     doers = {doer for _, (_, doer) in found}
     assert os.getpid() not in doers and len(doers) <= count
-
-
-def test_no_pieces():
-    assert list(spread(square, [], 2, never)) == []
+    assert list(spread(square, [], count, never)) == []
 
 
 def test_only_what_ends_its_process_is_lost(tmp_path):
@@ -61,6 +56,7 @@ def test_no_copies_beside_a_thread():
         thread.join()
 
 
+# Copies know what the process knows, without a guard of `__main__`, too
 COPIED = """
 import sys
 import numpy, scipy.linalg  # they have threads of their own, where there are several cores
@@ -72,14 +68,7 @@ def told(n):
 here = 40
 print(may_be_copied(), sorted(spread(told, [(1,), (2,)], 2, lambda place: "lost")))
 """
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="copies are made on Linux alone")
-def test_copies_know_what_this_process_knows():
-    """Without a guard of `__main__`, too."""
-    assert run(COPIED).stdout == "True [(0, 41), (1, 42)]\n"
-
-
+# No copies beside a thread that Python does not know
 NATIVE = """
 import ctypes, sys
 from contvines.shared.processes import may_be_copied
@@ -87,13 +76,7 @@ libc = ctypes.CDLL(None)
 waits = ctypes.cast(libc.pause, ctypes.c_void_p)
 print(libc.pthread_create(ctypes.byref(ctypes.c_ulong()), None, waits, None), may_be_copied())
 """
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="threads are counted on Linux alone")
-def test_no_copies_beside_a_thread_that_python_does_not_know():
-    assert run(NATIVE).stdout == "0 False\n"
-
-
+# No copies where one does not even end
 STUCK = """
 import ctypes, os, threading
 from contvines.shared import processes
@@ -106,8 +89,11 @@ print(processes.may_be_copied())
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="copies are made on Linux alone")
-def test_no_copies_where_one_does_not_even_end():
-    assert run(STUCK).stdout == "False\n"
+@pytest.mark.parametrize(
+    ("program", "says"), [(COPIED, "True [(0, 41), (1, 42)]"), (NATIVE, "0 False"), (STUCK, "False")]
+)
+def test_when_processes_are_copies(program, says):
+    assert run(program).stdout == says + "\n"
 
 
 KILLED = """

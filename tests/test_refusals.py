@@ -346,9 +346,15 @@ REFUSED = {
         page("impact_oscillator").orbit("R", 1, frequency=2.0).prove()
     ),
     "no state": lambda: box(starts={"y": (0, 1)}),
+    # animations
+    "a.avi: an animation": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("a.avi"),
+    "no folder": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("none/a.gif"),
+    "seconds = 0.0": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("a.gif", seconds=0.0),
     # quantities, design and theory
     "cavity = 0.0 must be positive": lambda: Design(cavity=[0.01, 0.0]),
     "one parameter set": lambda: ms.equilibria(ms.SlowFlow(), np.array([0.0, 1.0])),
+    "without friction": lambda: ms.best_clearance(ms.SlowFlow()),
+    "no linear peak": lambda: ms.tuned_backbone(ms.SlowFlow(friction=0.0, damping=0.0)),
     "C_min": lambda: ms.integrate(ms.SlowFlow(), 0.0, 0.1, 0.0, 1.0),
     # misspelt names
     "diagram has no argument 'dept' (did you mean 'depth'?); it has seed, over": lambda: cv.diagram(

@@ -1,5 +1,7 @@
 """The command line as a function, and a file for it."""
 
+import shlex
+
 import pytest
 
 from contvines.command.cli import main
@@ -9,11 +11,13 @@ from tests.contvines import fakes
 
 @pytest.fixture
 def run(capsys, monkeypatch, tmp_path):
-    """Runs `contvines ...` in an empty folder; returns (exit status, stdout, stderr)."""
+    """Runs `contvines ...`, words or one line, in an empty folder; returns (exit status, stdout, stderr)."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
 
     def go(*words):
+        if len(words) == 1:
+            words = shlex.split(words[0])
         try:
             main([str(w) for w in words])
             status = 0

@@ -1,46 +1,46 @@
-"""`contvines ...` in a process that kills itself, by SIGKILL, at a chosen write to its file.
+"""`contvines ...` in a process that strikes itself, by SIGKILL or SIGINT, at a chosen write to its file.
 
-Usage: python killer.py WRITES WHERE LOG ARGUMENTS...   WHERE: "before" the write, "inside" its transaction, "after" it.
+Usage: python killer.py BLOW WHERE WRITES LOG ARGUMENTS...   WHERE: "before" the write, "inside" its transaction, "after" it,
+or "look": when a finished diagram is looked over for what it does not have.
 The key of every journal record is appended to LOG as soon as the record is said to be kept.
 """
 
 import os
-import signal
 import sys
 
+from contvines.coexistence import census
 from contvines.command.cli import main
+from contvines.shared.row_journal import Rows
 from contvines.store import Store
 
-writes, where, log = int(sys.argv[1]), sys.argv[2], sys.argv[3]
-put, record, checkpoint = Store.put, Store.record, Store.checkpoint
+blow, chosen, writes, log = int(sys.argv[1]), sys.argv[2], int(sys.argv[3]), sys.argv[4]
 count = 0
 
 
-def die():
-    os.kill(os.getpid(), signal.SIGKILL)
+def strike(where):
+    if where == chosen and count >= writes:
+        os.kill(os.getpid(), blow)
 
 
-def counted_put(self, kind, key, content):
-    put(self, kind, key, content)
-    if where == "inside" and count >= writes:
-        die()
+def struck(owner, name, counts=True):
+    method = getattr(owner, name)
 
-
-def counted(method):
     def wrapped(self, *arguments):
         global count
-        count += 1
-        if where == "before" and count >= writes:
-            die()
+        count += counts
+        strike("before")
         method(self, *arguments)
-        if len(arguments) == 2:
+        if name == "record":
             with open(log, "a") as file:
                 file.write(f"{arguments[0]}\n")
-        if where == "after" and count >= writes:
-            die()
+        strike("after" if counts else "inside")
 
-    return wrapped
+    setattr(owner, name, wrapped)
 
 
-Store.put, Store.record, Store.checkpoint = counted_put, counted(record), counted(checkpoint)
-main(sys.argv[4:])
+struck(Store, "put", counts=False)
+for owner, name in ((Store, "record"), (Store, "checkpoint"), (Rows, "keep")):
+    struck(owner, name)
+if chosen == "look":
+    census.census = lambda *_: strike("look")
+main(sys.argv[5:])
