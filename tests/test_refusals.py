@@ -170,6 +170,9 @@ REFUSED = {
     ),
     "B1 has no measure 'speed'; choose one of norm, p": lambda: line().plot(y="speed"),
     "EP1 is a point of kind end; invariant circles": lambda: response()["EP1"].circles(),
+    "the graph has no 'LP7'": lambda: line().plot(labels=["LP7"]),
+    "give True, False or a list": lambda: line().plot(labels="BP1"),
+    "color = 'kind' is unknown; choose one of branch, word, stability": lambda: line().plot(color="kind"),
     # kinds of one's own
     "small letters": lambda: kind("Neutral saddle"),
     "used by another": lambda: with_kind(kind(label="LP")),

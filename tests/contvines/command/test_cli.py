@@ -109,6 +109,8 @@ REQUESTS = {
     "diagram friction.toml -o .": "this is a folder",
     "diagram .": "this is a folder; give the path of a TOML study",
     "diagram friction.toml --plot a.doc": "must end in .png",
+    "diagram friction.toml --plot a": "must end in .png",
+    "diagram friction.toml --plot none/a.png": "there is no folder",
     "diagram g.vines": "this is not a TOML file (it is no text in UTF-8). It is a database",
     "diagram stop.py": "this is a file of Python: run it with python",
     "orbit g.vines": "Give one of the labels BP1, EP1, VG1, B1, B2, B3",
@@ -150,6 +152,7 @@ REQUESTS = {
     "prove stop.toml": "offers no proofs",
     "design stop.toml": "closed forms of the built-in absorbers",
     "transient friction.toml --release 1": "has no oscillator",
+    "recommend panel.toml": "this is not a file of contvines recommend",
     "transient panel.toml": "none is given",
     "transient panel.toml --release '0 mm'": "give a number other than 0",
     "transient panel.toml --release 12": "has no unit",
@@ -248,7 +251,7 @@ STUDIES = [
 def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path, line, file, text, sentence):
     files = {
         "friction.toml": FRICTION, "keep.toml": FRICTION, "panel.toml": laboratory.STUDY, "stop.toml": STOP, "stop.py": STOP_FILE,
-        "flow.py": "mine", "hits.csv": "0\n70\n131\n190\n260\n", "notes.txt": "mine", file: text,
+        "flow.py": "mine", "panel-recommend.json": "{}", "hits.csv": "0\n70\n131\n190\n260\n", "notes.txt": "mine", file: text,
     }  # fmt: skip
     for name, content in files.items():
         (tmp_path / name).write_text(content)

@@ -1,6 +1,7 @@
 """Every plot function draws on given axes and respects what the user asks of style, legend and size."""
 
 import itertools
+from functools import cache
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -32,21 +33,10 @@ DECAY = [
     ("bare_oscillator", "mm", 2 * np.sin(90 * TIME)),
 ]
 ENERGY = [("time", "s", TIME), ("energy", "", np.exp(-2 * TIME)), ("bare_energy", "", np.exp(-TIME))]
-LATE, LARGEST = "measured less computed [s]", "largest displacement of the oscillator [mm]"
 DOTS = [(x, x**2) for x in np.linspace(0, 1, 20)]
 
 
-def atlas():
-    graph = fakes.pitchfork_graph()
-    graph.attractors = [
-        Attractor(value=v, word=w, periods=1, kind="periodic", branch=None, share=0.5)
-        for v in (-0.5, 0.5)
-        for w in ("LR", "tt")
-    ]
-    return graph
-
-
-@pytest.fixture(scope="module")
+@cache
 def basins():
     henon = cv.MapProblem(
         lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]], [0.63, 0.19], {"a": 0.2, "b": 0.3}
@@ -54,64 +44,44 @@ def basins():
     return cv.basins(henon.population(box=[(-2, 2), (-2, 2)]), at=0.2, points=8)
 
 
-@pytest.fixture(scope="module")
+@cache
 def circles():
     delayed = cv.MapProblem(lambda x, p: [p.r * x[0] * (1 - x[1]), x[0]], [0.4, 0.4], {"r": 1.7})
     return cv.diagram(delayed, within=(1.2, 2.4))["NS1"].circles(to=2.02)
 
 
-@pytest.fixture
-def functions(basins, circles):
-    graph = fakes.pitchfork_graph()
-    plan = Plan({"gap": np.array([1.0, 2.0, 3.0])}, {"friction": np.array([0.1, 0.2])})
-    survey = Survey(
-        plan, {"peak": np.array([[1.0, 2.0], [2.0, 3.0], [3.0, 5.0]])}, np.full((3, 2), ""), {}, {}
-    )
-    return {
-        "diagram": (1, lambda **k: plot_diagram(graph, **k)),
-        "sweep": (1, lambda **k: plot_sweep(DOTS, "p", graph, "u0", **k)),
-        "sweep alone": (1, lambda **k: plot_sweep(DOTS, "amplitude", **k)),
-        "network": (1, lambda **k: plot_network(graph, **k)),
-        "multipliers": (2, lambda **k: plot_multipliers(graph.branches["B2"], **k)),
-        "atlas": (2, lambda **k: plot_atlas(atlas(), **k)),
-        "basins": (1, lambda **k: plot_basins(basins, **k)),
-        "circles": (3, lambda **k: plot_circles(circles, **k)),
-        "portrait": (1, lambda **k: plot_portrait(np.array([[0.0, 1.0], [1.0, 0.0]]), **k)),
-        "survey": (1, lambda **k: plot_survey(survey, **k)),
-        "transient": (1, lambda **k: plot_transient(DECAY, np.linspace(0.1, 1.4, 30), **k)),
-        "decay": (1, lambda **k: plot_transient(ENERGY, **k)),
-        "calibration": (
-            1,
-            lambda **k: plot_calibration(TIME, 1e-5 * np.sin(9 * TIME), xlabel="t", ylabel=LATE, **k),
-        ),
-        "response": (
-            1,
-            lambda **k: plot_calibration(TIME, 0.0 * TIME, TIME**2, xlabel="p", ylabel=LARGEST, **k),
-        ),
-    }
+GRAPH = fakes.pitchfork_graph()
+ATLAS = fakes.pitchfork_graph()
+ATLAS.attractors = [
+    Attractor(value=v, word=w, periods=1, kind="periodic", branch=None, share=0.5)
+    for v in (-0.5, 0.5)
+    for w in ("LR", "tt")
+]
+PLAN = Plan({"gap": np.array([1.0, 2.0, 3.0])}, {"friction": np.array([0.1, 0.2])})
+SURVEY = Survey(PLAN, {"peak": np.array([[1.0, 2.0], [2.0, 3.0], [3.0, 5.0]])}, np.full((3, 2), ""), {}, {})
+LATE, LARGEST = "measured less computed [s]", "largest displacement of the oscillator [mm]"
+# Names, and how many axes each wants
+FUNCTIONS = {
+    "diagram": (1, lambda **k: plot_diagram(GRAPH, **k)),
+    "sweep": (1, lambda **k: plot_sweep(DOTS, "p", GRAPH, "u0", **k)),
+    "sweep alone": (1, lambda **k: plot_sweep(DOTS, "amplitude", **k)),
+    "network": (1, lambda **k: plot_network(GRAPH, **k)),
+    "multipliers": (2, lambda **k: plot_multipliers(GRAPH.branches["B2"], **k)),
+    "atlas": (2, lambda **k: plot_atlas(ATLAS, **k)),
+    "basins": (1, lambda **k: plot_basins(basins(), **k)),
+    "circles": (3, lambda **k: plot_circles(circles(), **k)),
+    "portrait": (1, lambda **k: plot_portrait(np.array([[0.0, 1.0], [1.0, 0.0]]), **k)),
+    "survey": (1, lambda **k: plot_survey(SURVEY, **k)),
+    "transient": (1, lambda **k: plot_transient(DECAY, np.linspace(0.1, 1.4, 30), **k)),
+    "decay": (1, lambda **k: plot_transient(ENERGY, **k)),
+    "calibration": (1, lambda **k: plot_calibration(TIME, 1e-5 * np.sin(9 * TIME), xlabel="t", ylabel=LATE, **k)),
+    "response": (1, lambda **k: plot_calibration(TIME, 0.0 * TIME, TIME**2, xlabel="p", ylabel=LARGEST, **k)),
+}  # fmt: skip
 
 
-NAMES = (
-    "diagram",
-    "sweep",
-    "sweep alone",
-    "network",
-    "multipliers",
-    "atlas",
-    "basins",
-    "circles",
-    "portrait",
-    "survey",
-    "transient",
-    "decay",
-    "calibration",
-    "response",
-)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_it_draws_on_given_axes_and_pyplot_keeps_no_figure_of_ours(functions, name):
-    count, function = functions[name]
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_it_draws_on_given_axes_and_pyplot_keeps_no_figure_of_ours(name):
+    count, function = FUNCTIONS[name]
     before = plt.get_fignums()
     function()
     assert plt.get_fignums() == before
@@ -127,8 +97,8 @@ def test_it_draws_on_given_axes_and_pyplot_keeps_no_figure_of_ours(functions, na
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ("diagram", "network", "atlas", "basins", "survey", "transient"))
-def test_it_respects_the_users_style_and_settings_stay(functions, name):
-    _, function = functions[name]
+def test_it_respects_the_users_style_and_settings_stay(name):
+    function = FUNCTIONS[name][1]
     before = dict(mpl.rcParams)
     with mpl.rc_context({"axes.facecolor": "#ffeecc"}):
         assert function().axes[0].get_facecolor()[:3] == mpl.colors.to_rgb("#ffeecc")
@@ -137,27 +107,30 @@ def test_it_respects_the_users_style_and_settings_stay(functions, name):
     assert dict(mpl.rcParams) == before
 
 
+SIZES = [*((name, (3.4, 2.4)) for name in FUNCTIONS), ("diagram", (2.6, 2.2)), ("diagram", (10.0, 6.0))]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(functions, name):
-    _, function = functions[name]
-    figure = function(figsize=(3.4, 2.4))
+@pytest.mark.parametrize(("name", "size"), SIZES)
+def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(name, size):
+    figure = FUNCTIONS[name][1](figsize=size)
     figure.canvas.draw()
-    page = figure.bbox
-    axes = figure.axes[0]
-    assert axes.get_window_extent().width > 0.4 * page.width
+    page, window = figure.bbox, figure.axes[0].get_window_extent()
+    assert window.width > 0.4 * page.width
+    if name == "diagram":
+        assert window.width > 0.5 * page.width and window.height > 0.35 * page.height
     for one in figure.axes:
         shown = [seen_ticks(axis) for axis in (one.xaxis, one.yaxis)] if one.axison else [[], []]
-        things = [
+        legends = [*figure.legends, *filter(None, [one.get_legend()])]
+        for thing in (
             one.xaxis.label,
             one.yaxis.label,
             one.title,
             *one.texts,
-            *figure.legends,
+            *legends,
             *shown[0],
             *shown[1],
-        ]
-        for thing in things:
+        ):
             box = thing.get_window_extent()
             if one.axison and thing.get_visible() and box.width > 1:
                 assert box.x0 >= page.x0 - 2 and box.x1 <= page.x1 + 2, thing
@@ -175,8 +148,8 @@ def seen_ticks(axis):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ("diagram", "sweep", "atlas", "basins", "circles", "survey", "multipliers"))
-def test_a_legend_can_be_left_out_or_put_somewhere(functions, name):
-    _, function = functions[name]
+def test_a_legend_can_be_left_out_or_put_somewhere(name):
+    function = FUNCTIONS[name][1]
 
     def legends(**options):
         figure = function(**options)
