@@ -1,7 +1,5 @@
 """Lines to compare a graph with, and numbers as people read them."""
 
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -9,52 +7,28 @@ import pytest
 import contvines as cv
 from contvines.command.compose import first_orbit, machine
 from contvines.command.plot import draw_compared, peaks_compared
-from contvines.command.study import read_study
-
-STUDY = """
-units = "si"
-[model]
-name = "coupled"
-oscillator_mass = "3.8 kg"
-natural_frequency = "8 Hz"
-damping_ratio = 0.02
-absorber_mass = "32 g"
-half_width = "14 mm"
-restitution = 0.6
-friction = 0.5
-base_amplitude = "1 mm"
-[start]
-word = ""
-frequency = "3 Hz"
-[continue]
-parameter = "frequency"
-within = ["2.9 Hz", "3.1 Hz"]
-"""
+from contvines.command.study import check_study, read_study
+from tests.contvines.studies import EXAMPLES, SI, data
 
 
-@pytest.fixture(scope="module")
-def graph(tmp_path_factory):
-    path = tmp_path_factory.mktemp("compared") / "study.toml"
-    path.write_text(STUDY)
-    return cv.diagram(first_orbit(read_study(path)), over="frequency", within=(2.9, 3.1), depth=0)
-
-
-def test_the_bare_oscillator_of_a_shaken_base_in_millimetres(graph):
+def test_the_bare_oscillator_of_a_shaken_base_in_millimetres():
     """Shaken at its base by 1 mm: |1 + 2 i zeta r| / |1 - r^2 + 2 i zeta r| millimetres, r the frequency over 8 Hz."""
+    shaken = 'model.damping_ratio = 0.02\nmodel.base_amplitude = "1 mm"\nmodel.friction = 0.5'
+    place = 'start = { word = "", frequency = "3 Hz" }\ncontinue.within = ["2.9 Hz", "3.1 Hz"]'
+    orbit = first_orbit(check_study(data(SI, f"{shaken}\n{place}")))
+    graph = cv.diagram(orbit, over="frequency", within=(2.9, 3.1), depth=0)
     figure, axes = plt.subplots()
     draw_compared(axes, graph, ["bare"], None, "max_abs_q1")
     values, response = axes.lines[0].get_data()
     plt.close(figure)
     r = np.asarray(values) / 8.0
-    wanted = np.abs((1 + 0.04j * r) / (1 - r**2 + 0.04j * r))
-    np.testing.assert_allclose(response, wanted, rtol=0.02)
+    np.testing.assert_allclose(response, np.abs((1 + 0.04j * r) / (1 - r**2 + 0.04j * r)), rtol=0.02)
     assert values[0] == 2.9 and values[-1] == 3.1
 
 
 def test_peaks_to_compare_with_are_those_of_two_oscillators_in_the_frequency_domain():
     """The bare oscillator on its shaken base, and Den Hartog's absorber on it: tuned to f_0/(1 + mu), c = 2 m omega_0 sqrt(3 mu/(8 (1 + mu)^3))."""
-    study = Path(__file__).parents[3] / "examples" / "design" / "absorber.toml"
-    model = machine(read_study(study))
+    model = machine(read_study(EXAMPLES / "design" / "absorber.toml"))
     r, zeta, mu = np.linspace(7.0, 9.0, 400_001) / 8.0, 0.007, 0.032 / 3.8
     load = 0.3 * (1.0 + 2j * zeta * r)  # mm, over the oscillator's stiffness
     own = 1.0 - r**2 + 2j * zeta * r
