@@ -141,7 +141,7 @@ REQUESTS = {
     "export g.vines --to csv -o x.json": "x.json: this is not a .csv file by its name",
     "diagram friction.toml -o x.txt": "x.txt: this is not a .vines file by its name; use -o x.vines",
     "diagram friction.toml -o -": "-: results are kept in files",
-    "rerun g.vines": "keeps no study",
+    "rerun g.vines": "keeps no study to run again, as it was saved from Python (graph.save): the script that made it",
     "new foo": "contvines: foo: there is no such choice; choose one of absorber, coupled, cavity, si, machine, flow.",
     "new flow": "flow.py: this file is there already",
     "prove g.vines XX": "no label",
