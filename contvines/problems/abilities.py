@@ -98,29 +98,29 @@ def notation_of(*things: object) -> dict[str, str]:
 class Population(Protocol):
     """Starts of a problem, and the motions that they settle on.
 
-    The contract, in words:
+    The contract:
 
-    1. ``population.starts(count, seed, p)`` draws starts, shape (count, n), over a box that the machine knows; the same for the
-       same seed.
-    2. ``population.settle(starts, p)`` returns ``(motions, index, mirrored)``: the motions reached, each once; which of them each
-       start reaches; and whether it is the mirror image that it reaches. The result depends on the starts alone.
-    3. A motion has ``kind``, ``word``, ``periods``, ``exponent`` and ``error`` (the largest Lyapunov exponent per period and its
-       standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None;
-       ``state``, a state on it from which it goes on, where there is one.
-    4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
-       Optional: ``population.notation``, labels of axes by name of coordinate; ``population.leftward``, the coordinate that a picture shows growing from right to left.
-    5. ``population.brief`` is how many values and how many starts at each a brief look after a diagram takes: few, so that it costs a
-       fraction of the diagram; ``population.price``, how many times as long as in closed form a solution takes; ``population.across`` how many starts each way a picture of basins has where no number is given.
+    1. ``population.starts(count, seed, p)`` draws starts, shape (count, n), in the machine's box; equal seeds give equal starts.
+    2. ``population.settle(starts, p)`` returns ``(motions, index, mirrored)``: the motions reached, each once; for each start the index of its
+       motion; and for each start whether it reaches the mirror image of that motion. The result depends on the starts alone.
+    3. A motion has ``kind``, ``word``, ``periods``; ``exponent`` and ``error`` (largest Lyapunov exponent per period and its standard error;
+       nan for periodic motions); ``problem`` and ``u`` if it is a solution that can be continued, else None; and ``state``, a state on the
+       motion, if there is one.
+    4. ``population.about`` describes the machine for the graph (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
+       Optional: ``population.notation``, axis labels by coordinate; ``population.leftward``, the coordinate whose axis is drawn from right to left.
+    5. ``population.brief`` is the number of parameter values, and of starts at each, of the brief search after a diagram; it should cost a
+       fraction of the diagram. ``population.price`` is the cost of a solution relative to one of a closed-form machine; ``population.across`` the
+       default number of starts along each side of a picture of basins.
     6. ``population.embedded(motion.state, p)`` returns ``(problem, u)`` of unstable cycles that a chaotic motion passes near, each once.
-       Windows of periodic motion are born in pairs of which the unstable one lives on in the chaos beside them: traced back, it
-       leads into windows that are too narrow for starts to meet.
-    7. ``population.returning(starts, p)`` returns ``(problem, u)`` of cycles, stable or not, to which Newton's method on the return map leads
-       from starts, each once: it reaches a cycle from far more starts than settle on it. What is known in closed form is among them.
-    8. ``population.closed(p)`` returns ``(problem, u)`` of the motions known in closed form, stable or not, each once.
-    9. ``population.restored(problem.describe(), u, p)`` returns the problem of a motion that `settle`, `embedded` or `returning` had at p, measured as theirs; None
-       where it cannot be rebuilt.
-    10. ``population.observed(motion.state, p, periods)`` returns the measures by name of the motion through this state, from simulation, of what does not recur
-        over at least so many periods; none without a state.
+       Periodic windows are born as pairs of cycles, and the unstable cycle of a pair persists in the chaos next to the window: continuing
+       it back leads to windows that are too narrow to be hit by starts.
+    7. ``population.returning(starts, p)`` returns ``(problem, u)`` of cycles, stable or unstable, that Newton's method on the return map finds
+       from starts, each once; many more starts converge to a cycle than settle on it. Motions known in closed form are included.
+    8. ``population.closed(p)`` returns ``(problem, u)`` of the motions known in closed form, stable or unstable, each once.
+    9. ``population.restored(problem.describe(), u, p)`` rebuilds the problem of a motion that `settle`, `embedded` or `returning` found at p, with the same
+       scales; None if it cannot be rebuilt.
+    10. ``population.observed(motion.state, p, periods)`` simulates the motion through a state and returns its measures by name; a motion that is not
+        periodic is simulated for at least `periods` periods. Empty without a state.
     11. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas.
     """
 

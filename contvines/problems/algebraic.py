@@ -1,4 +1,4 @@
-"""AlgebraicProblem: F(u, p) = 0 from a Python callable."""
+"""AlgebraicProblem: solutions of F(u, p) = 0, or equilibria of u' = F(u, p), with F a Python callable."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from .conditions import Conditions
     from .large.sparse import SparseWork
 
-ALL_ZERO = np.zeros(NEAREST, dtype=complex)
-PATIENCE = 4000  # steps of the integration of one start
-SPREAD = 2.0  # of the starts, in sizes of the unknowns
-LARGEST = 60  # unknowns of equations that are integrated
+ZERO_SPECTRUM = np.zeros(NEAREST, dtype=complex)
+PATIENCE = 4000  # integrator steps from one start; after these it counts as an oscillation
+SPREAD = 2.0  # half-width of the box of starts, in sizes of the unknowns
+LARGEST = 60  # most unknowns of equations that are integrated for attractors
 
 
 class AlgebraicProblem(CallableProblem):
@@ -41,46 +41,46 @@ class AlgebraicProblem(CallableProblem):
     Parameters
     ----------
     F : callable
-        (u of shape (N,), p) -> N numbers. It sees u read-only. With ``switches`` it has a third argument.
+        (u of shape (N,), p) -> N numbers. u is read-only. With ``switches`` F has a third argument.
     u0 : array_like, shape (N,) or scalar
-        A start; it need not be exact.
+        A start; an approximate solution is enough.
     p0 : float, or mapping of str to float
         Parameter value of the start, or the values of several parameters by name: ``F(u, p)`` then reads ``p.name``.
     parameter : str
-        Name of the parameter that varies; of several the first one, if it is left out.
+        Name of the parameter that varies; by default the first of several.
     jacobian : callable, optional
         (u, p) -> dF/du of shape (N, N): an array, a matrix of ``scipy.sparse`` in any format, or a LinearOperator, which is never
-        factorised. Else the complex step, where F allows it, or differences with an error estimate. It is compared with
-        differences of F at the start and at every special point.
+        factorised. By default the complex step if F allows it, else differences with an error estimate. A given Jacobian is
+        compared with differences of F at the start and at every special point.
     derivative : callable, or mapping of str to callable, optional
-        (u, p) -> dF/dp of shape (N,); of several parameters by name.
+        (u, p) -> dF/dp of shape (N,); a mapping by name for several parameters.
     spectrum : {"none", "flow"}
         "flow": stability and Hopf points from the eigenvalues of dF/du. With "none" stability is not computed.
     mirror : callable, matrix or permutation, optional
-        u -> image of u that solves the same equations; branch points on its fixed space are symmetry breakings and one
-        of the two mirror images is traced.
+        u -> image of u that solves the same equations; branch points of symmetric solutions are then symmetry breakings, and only
+        one of two mirror images is traced.
     name : str, optional
         For tables.
     scale : float or array_like of shape (N,), optional
-        What counts as large in each unknown; learned from the start and the branch if it is left out.
+        Typical size of each unknown; learned from the start and the branch if it is left out.
     symmetries : sequence of callables, matrices or permutations, optional
-        Further images of u that solve the same equations: generators of a finite group. Of equivalent branches one is traced.
+        Further images of u that solve the same equations: generators of a finite group. Only one of equivalent branches is traced.
     conditions : sequence of callables, optional
-        (u, p) -> number, zero on the solutions wanted: one for each continuous symmetry, such as a phase condition.
+        (u, p) -> number that must be zero: one condition, such as a phase condition, for each continuous symmetry.
     switches : mapping of str to callable, optional
         (u, p) -> number whose sign selects a piece of F. F is then called as F(u, p, sign) with a mapping from the names to
         +1 or -1, must be smooth for fixed signs, and must not look at the switches itself.
     leading : int
-        How many eigenvalues of a sparse or matrix-free Jacobian are computed for spectrum "flow".
+        Number of eigenvalues of a sparse or matrix-free Jacobian, for spectrum "flow".
     shift : float
-        Those nearest to this one.
+        The eigenvalues nearest to this number are computed.
     preconditioner : callable, optional
-        (u, p) -> LinearOperator or array that is nearly the inverse of dF/du, for a matrix-free Jacobian.
+        (u, p) -> LinearOperator or array, an approximate inverse of dF/du, for a matrix-free Jacobian.
     sparsity : sparse matrix or array of shape (N, N), optional
-        Not zero where F_i depends on u_j: without a ``jacobian`` a sparse one is made by differences (or the complex step), of
-        all columns at once that share no row.
+        Pattern, not zero where F_i depends on u_j. Without a ``jacobian`` the sparse Jacobian is then computed by differences (or the
+        complex step); columns that share no row are differentiated together.
     outputs : mapping of str to callable, optional
-        (u, p) -> number: measures of your own, for tables, pictures and exports.
+        (u, p) -> number: additional measures for tables, pictures and exports.
 
     Raises
     ------
@@ -161,7 +161,7 @@ class AlgebraicProblem(CallableProblem):
         self._find_structure(start)
         if self.mirror is not None:
             self.symmetries = (Symmetry("symmetry-breaking", self._mirrored),)
-        self.describe()  # its callables are known by their addresses from now on
+        self.describe()  # registers the callables by their addresses
 
     def _find_structure(self, start: np.ndarray) -> None:
         dense = self._structure_at(start) == "dense"
@@ -183,12 +183,12 @@ class AlgebraicProblem(CallableProblem):
         return np.append(self.mirror(u[: self.node]), u[self.node :])
 
     def of_unknowns(self, each: np.ndarray) -> np.ndarray:
-        """The multipliers of conditions have the length 1."""
+        """Extend an array over the unknowns of F by 1 for the multiplier of each condition."""
         return np.append(each, np.ones(self.dimension - self.node, dtype=each.dtype))
 
     # ------------------------------------------------------------------ numerics
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
-        """F alone."""
+        """Return F without its derivatives."""
         if self.conditions is not None:
             return self.equations(u, p)[0]
         return self.functions.value(u, p)
@@ -196,7 +196,7 @@ class AlgebraicProblem(CallableProblem):
     def equations(
         self, u: np.ndarray, p: float
     ) -> tuple[np.ndarray, np.ndarray | csc_array | Operator, np.ndarray]:
-        """F, dF/du, dF/dp."""
+        """Return F, dF/du and dF/dp."""
         f, u = self.functions, readonly(u)
         if self.preconditioner is not None:
             self.inverse = self.preconditioner(u, self.values.at(p))
@@ -209,16 +209,16 @@ class AlgebraicProblem(CallableProblem):
     mixed_rows = True
 
     def preconditioner_at(self) -> np.ndarray | Operator | None:
-        """The user's approximation of the inverse of dF/du where the equations were evaluated last, or None."""
+        """Return the user's approximate inverse of dF/du at the last evaluation, or None."""
         return self.inverse
 
     def raw_spectrum(self, work: Linearised) -> np.ndarray:
-        """Eigenvalues of dF/du, in units of the typical rate; those watched for branch points, where there is no spectrum."""
+        """Return the eigenvalues of dF/du, in units of the typical rate; with spectrum "none" the numbers that detect branch points (see :mod:`.spectra`)."""
         if not self.n_multipliers:
             return np.zeros(0)
         if self.detection == "real":
             if self.many and not self.close:
-                return ALL_ZERO - self.algebra.distance_to_singular(self, work)
+                return ZERO_SPECTRUM - self.algebra.distance_to_singular(self, work)
             return self.algebra.nearest_eigenvalues(self, work)
         rate = 1.0 if self.scales is None else self.scales.rate
         return self._eigenvalues(work) / rate
@@ -234,7 +234,7 @@ class AlgebraicProblem(CallableProblem):
         return without_roundoff(np.linalg.eigvals(work.jacobian))
 
     def blur(self, work: DenseWork | SparseWork) -> float:
-        """By how much rounding moves a raw eigenvalue."""
+        """Estimate how much rounding of dF/du moves a raw eigenvalue."""
         matrix = work.jacobian
         if isinstance(matrix, Operator):
             return 0.0
@@ -242,7 +242,7 @@ class AlgebraicProblem(CallableProblem):
         return rounding(matrix[: self.node, : self.node], self.sizes()[1][: self.node]) / rate
 
     def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
-        """Eigenvectors of dF/du as columns, in the order of eigenvalues that are known (inverse iteration where it is sparse)."""
+        """Return eigenvectors of dF/du as columns, in the order of the given eigenvalues (by inverse iteration if dF/du is sparse)."""
         matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
         if isinstance(matrix, np.ndarray):
             every = values if len(values) else np.linalg.eigvals(matrix)
@@ -252,7 +252,7 @@ class AlgebraicProblem(CallableProblem):
         return sparse.eigenvectors(matrix, values)
 
     def rates(self, work: DenseWork | SparseWork) -> list[float]:
-        """Median size of the eigenvalues, for spectrum "flow"."""
+        """Return the median magnitude of the eigenvalues as a list of one number; empty unless the spectrum is "flow"."""
         if self.spectrum != "flow":
             return []
         sizes = np.abs(self._eigenvalues(work))
@@ -260,14 +260,14 @@ class AlgebraicProblem(CallableProblem):
         return [float(np.median(sizes))] if len(sizes) else []
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Eigenvalues in the unit of time of the equations."""
+        """Return eigenvalues in the equations' unit of time from raw ones."""
         if self.spectrum == "none":
             return np.zeros((*spectrum.shape[:-1], 0), dtype=complex)
         return np.asarray(spectrum, dtype=complex) * (1.0 if self.scales is None else self.scales.rate)
 
     # ------------------------------------------------------------------ pieces
     def with_pieces(self, pieces: Pieces) -> AlgebraicProblem:
-        """The same problem in another piece."""
+        """Return the same problem with other signs of the switches."""
         other = self.against(self.parameter)
         other.pieces, other.functions = pieces, self.functions_in(pieces)
         other.reference = None
@@ -275,7 +275,7 @@ class AlgebraicProblem(CallableProblem):
 
     # ------------------------------------------------------------------ identity and measures
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
-        """Of u and its images the one that comes first in dictionary order."""
+        """Return a key, and the first in dictionary order of u and its images."""
         u = np.asarray(u, dtype=float)
         key = ("algebraic", self.dimension, self.pieces.key)
         if not self.images:
@@ -286,20 +286,20 @@ class AlgebraicProblem(CallableProblem):
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """The user's own measures, norm, and the unknowns."""
+        """Names: the user's outputs, "norm", and the unknowns "u0", "u1", ..."""
         return (*self.outputs.names, "norm", *(f"u{i}" for i in range(self.node)))
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures for an array of solutions."""
+        """Return the named measures, each of shape (m,), of m solutions."""
         u = np.atleast_2d(u)[:, : self.node]
         own = self.outputs.measures([name for name in names if name in self.outputs.names], u, p)
         return {**super().measures([name for name in names if name not in own], u, p), **own}
 
     # ------------------------------------------------------------------ motions of u' = F(u, p)
     def simulated_attractors(self, p: float, starts: int = 12) -> list[dict[str, Any]]:
-        """What starts round u0 settle on: equilibria, each once, oscillations, or nothing within reach; none without a flow.
+        """Integrate u' = F from starts around u0, and list what they settle on, each once; empty unless the spectrum is "flow".
 
-        "word" and "kind" are "equilibrium", "oscillation" or "escapes"; an equilibrium has its place, "u".
+        "word" and "kind" of an entry are "equilibrium", "oscillation" or "escapes"; an equilibrium has its state, "u".
         """
         if self.spectrum != "flow" or self.node > LARGEST or self.node != len(self.u0):
             return []
@@ -319,11 +319,12 @@ class AlgebraicProblem(CallableProblem):
         return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable equilibrium as `simulated_attractors` lists it."""
+        """Return a stable equilibrium as an entry of `simulated_attractors`."""
         place = [float(x) for x in u[: self.node]]
         return {"word": "equilibrium", "periods": 0, "kind": "equilibrium", "u": place}
 
     def _settled(self, u: np.ndarray, p: float, size: np.ndarray) -> tuple[str, np.ndarray]:
+        """Integrate u' = F from u; return the kind of the attractor, and the equilibrium if it is one."""
         from scipy.integrate import LSODA
 
         def rate(t: float, x: np.ndarray) -> np.ndarray:
@@ -333,13 +334,13 @@ class AlgebraicProblem(CallableProblem):
                 return np.full(len(x), np.nan)
 
         with np.errstate(all="ignore"):
-            if not rate(0.0, u).any():  # at rest to the last bit, stable or not
+            if not rate(0.0, u).any():  # u is an equilibrium to the last bit, perhaps an unstable one
                 u = u + SIMULATION.beside * size * (-1.0) ** np.arange(len(u))
             speed = float((np.abs(rate(0.0, u)) / size).max())
             span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
             tolerances: dict[str, Any] = {"rtol": SIMULATION.relative, "atol": SIMULATION.absolute * size}
             solver = LSODA(rate, 0.0, u, np.inf, **tolerances)
-            rest, since = u, 0.0  # where the motion was, and when
+            rest, since = u, 0.0  # last state that was left by more than `still`, and its time
             for _ in range(PATIENCE):
                 solver.step()
                 x = solver.y
@@ -353,7 +354,7 @@ class AlgebraicProblem(CallableProblem):
 
     # ------------------------------------------------------------------ files
     def describe(self) -> dict[str, Any]:
-        """Name, start, and how to build the problem again if F can be imported."""
+        """Return name, start, and the data from which `from_description` rebuilds the problem if F can be imported."""
         where, importable = addresses(self.given)
         special = (
             self.symmetric,
@@ -378,13 +379,14 @@ class AlgebraicProblem(CallableProblem):
 
 
 def _one(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> bool:
+    """Whether two entries of `simulated_attractors` are the same attractor."""
     if a["kind"] != b["kind"]:
         return False
     return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < SIMULATION.beside * size).all())
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AlgebraicProblem | None:
-    """An AlgebraicProblem from what ``describe()`` returned; None where its callables are not at hand."""
+    """Rebuild an AlgebraicProblem from the result of ``describe()``; None if its callables cannot be found."""
     functions = find_callables(description["callables"], trust)
     if functions is None:
         return None

@@ -1,4 +1,4 @@
-"""What problems made of Python callables have in common: parameters, scales, checks, and what they say when they fail."""
+"""CallableProblem: base class of problems made of Python callables, with their parameters, scales, checks and messages."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from .protocol import BorderPoint, Kernels, Seed
     from .symmetries import Image
 
-TERMS = 62  # roundings of more unknowns than this cancel
+TERMS = 62  # unknowns whose rounding errors are summed in the uncertainty; those of more cancel
 
 
 class CallableProblem(Parametrised, ProblemDefaults, ABC):
@@ -50,19 +50,20 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
     scales : Scales or None
         None until they have been learned.
     reference
-        A matrix relative to which eigenvalues are watched for branch points where there is no spectrum.
+        Matrix relative to which the eigenvalues of F_u are computed for branch points if there is no spectrum.
     many : bool
-        Whether they are watched only where a cheaper number asks for it; see :mod:`.spectra`.
+        Whether these eigenvalues are computed only near branch points, as a cheaper number decides; see :mod:`.spectra`.
     close : bool
-        Whether they are watched here; see `closer`.
+        Whether this copy computes them; see `closer`.
     signed : bool
-        Whether the sign of the determinant is known: not of a Jacobian without a matrix.
+        Whether the sign of the determinant is known: not for a matrix-free Jacobian.
     trouble : str
-        Why the equations could not be evaluated the last time that happened.
+        Reason of the last failed evaluation of the equations.
     unsolved : bool
-        Whether the last linear system, of a Jacobian without a matrix, was not solved.
+        Whether GMRES failed at the last linear system (matrix-free Jacobian).
     generators, symmetric_for, mixed_rows
-        Symmetries by name, and for which parameters they are known to be some; see :mod:`.symmetries`.
+        Symmetries as pairs (name, image); the parameter sets for which they have been checked; whether their check allows the rows
+        of F to be permuted and multiplied. See :mod:`.symmetries`.
     """
 
     values: ParameterSet
@@ -86,7 +87,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
     def _wrapped(
         self, pieces: Pieces
     ) -> tuple[Callable, Callable | None, Callable | Mapping[str, Callable] | None]:
-        """The equations and their given derivatives in a piece.
+        """Return F, the given Jacobian and the given parameter derivative, with the signs of `pieces` filled in.
 
         Raises
         ------
@@ -115,25 +116,25 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return pieces.wrap(self.given["F"], "F"), wrapped, slopes
 
     def functions_in(self, pieces: Pieces) -> Differentiated:
-        """The equations with their derivatives in other pieces."""
+        """Return the equations and their derivatives with other signs of the switches."""
         return self.functions.of(*self._wrapped(pieces))
 
     def closer(self) -> Self:
-        """The same problem, watched by its eigenvalues."""
+        """Return the same problem, with the eigenvalues nearest to zero in its rows; see :mod:`.spectra`."""
         problem = copy(self)
         problem.data, problem.close = problem, True
         return problem
 
     # ------------------------------------------------------------------ parameters
     def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Self:
-        """The same problem with another parameter varying, and with other values of some parameters.
+        """Return the same problem with another parameter varying, and with other values of some parameters.
 
-        Cheap: nothing is evaluated. Scales are learned again where another parameter varies.
+        Nothing is evaluated. If another parameter varies, the scales are learned again.
 
         Parameters
         ----------
         parameter : str
-            The one that varies from now on.
+            Name of the parameter that varies in the new problem.
         values : mapping, optional
             New values of some parameters.
 
@@ -153,60 +154,60 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return other._own()
 
     def _own(self) -> Self:
-        """To be called on a copy: what refers to the problem refers to the copy."""
+        """Let a copy's references to the problem refer to the copy; every method that copies calls it."""
         self.data = self
         return self
 
     # ------------------------------------------------------------------ the equations
     @abstractmethod
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
-        """F alone."""
+        """Return F without its derivatives."""
 
     def margins(self, u: np.ndarray, p: float) -> np.ndarray:
-        """Switches with the signs of the pieces: positive inside."""
+        """Return the switches times their signs: positive while the solution lies in its piece."""
         nodes = np.asarray(u)[: self.node * len(self.pieces.signs)].reshape(-1, self.node)
         return self.pieces.margins(nodes, p)
 
     def margin_kind(self, j: int) -> str:
-        """Every border of a piece is a switch."""
+        """Kind of the border at which margin j vanishes: always "switch"."""
         return "switch"
 
     def beyond(self, point: BorderPoint) -> list[Seed]:
-        """The solutions on the other side of a switch."""
+        """Return the solutions on the other side of a switch."""
         return self.pieces.beyond(self, point)
 
     @abstractmethod
     def with_pieces(self, pieces: Pieces) -> Pieced:
-        """The same problem in other pieces."""
+        """Return the same problem with other signs of the switches."""
 
     # ------------------------------------------------------------------ scales
     node: int
 
     def amplitude(self, direction: np.ndarray) -> float:
-        """Length of a direction as normal forms measure it: Euclidean, over the unknowns (over the first point of a cycle)."""
+        """Length of a direction for normal forms: the Euclidean norm over the unknowns (of a cycle: over its first point)."""
         return float(np.linalg.norm(direction[: self.node]))
 
     def of_unknowns(self, each: np.ndarray) -> np.ndarray:
-        """What `functions` know of each of their arguments, of each unknown."""
+        """Extend an array over the arguments of the user's function to all unknowns of the problem."""
         return each
 
     @property
     def lengths(self) -> np.ndarray:
-        """Length over which the equations bend in each unknown."""
+        """Change of each unknown over which the equations are nonlinear, shape (N,)."""
         return self.of_unknowns(self.functions.lengths)
 
     @property
     def noise(self) -> float:
-        """Accuracy to which unknowns can be obtained, relative to their scale; 0: to roundoff."""
+        """Error of the unknowns that noise of the equations causes, relative to their scale; 0: roundoff only."""
         return 0.0 if self.scales is None else self.scales.noise
 
     @property
     def scales_learned(self) -> bool:
-        """Whether sizes of the unknowns come from a look round the start, not from the user."""
+        """Whether the scales of the unknowns were learned near the start, not given by the user."""
         return self.scales is not None and self.given_scale is None
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
-        """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""
+        """Typical sizes of unknowns and parameter, shape (N + 1,); the first call learns them."""
         scales = self.scales
         self._check_symmetries()
         if scales is None:
@@ -216,7 +217,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return scales.vector
 
     def sizes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Typical sizes of equations and unknowns, 1 as long as they are not known."""
+        """Typical sizes of equations and unknowns; ones before the scales are learned."""
         scales = self.scales
         if scales is None:
             return np.ones(self.dimension), np.ones(self.dimension)
@@ -224,19 +225,19 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
 
     @property
     def side(self) -> np.ndarray:
-        """The right-hand side that is watched, shape (N + 1,)."""
+        """Fixed right-hand side b of the distance from a branch point, shape (N + 1,); see :mod:`.spectra`."""
         if self._side is None or self._side[0] is not self.scales:
             self._side = self.scales, side(self.sizes()[0])
         return self._side[1]
 
     def rates(self, work: DenseWork | SparseWork) -> list[float]:
-        """Sizes of the eigenvalues of dF/du, where they are wanted and can be obtained cheaply."""
+        """Return typical magnitudes of the eigenvalues of dF/du, if the problem has a spectrum and they are cheap."""
         return []
 
     # ------------------------------------------------------------------ algebra
     @property
     def algebra(self) -> ModuleType:
-        """The module with the kernels that fit the Jacobian."""
+        """Module with the kernels for the structure of the Jacobian."""
         if self.functions.structure == "dense":
             return dense
         from .large import sparse
@@ -245,17 +246,17 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
 
     @property
     def kernels(self) -> Kernels:
-        """The kernels that fit the Jacobian: dense, sparse, or matrix-free."""
+        """Kernels for the structure of the Jacobian: dense, sparse, or matrix-free."""
         return self.algebra.KERNELS
 
     def workspace(self) -> DenseWork | SparseWork:
-        """Arrays for the kernels."""
+        """Return new arrays for the kernels."""
         return self.algebra.workspace(self)
 
-    # ------------------------------------------------------------------ what is wrong
+    # ------------------------------------------------------------------ errors and messages
     @property
     def stuck(self) -> str:
-        """A sentence on linear systems that are not solved; empty where they are."""
+        """Message if GMRES failed at the last linear system; else empty."""
         if not self.unsolved:
             return ""
         better = "a preconditioner=" if self.given["preconditioner"] is None else "a better preconditioner="
@@ -267,7 +268,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return self.functions.structure != "operator"
 
     def uncertainty(self) -> float:
-        """Relative accuracy of what was evaluated last: of derivatives by differences, of noisy equations, and of rounding."""
+        """Relative accuracy of the last evaluation: the largest error of differences, noise and rounding."""
         errors, least = (
             self.functions.errors,
             max(self.noise, 0.5 * ROUNDED * (2 + min(self.dimension, TERMS))),
@@ -278,9 +279,9 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
     def doubts(self, work: DenseWork | SparseWork, rounding: float) -> np.ndarray | csc_array | None:
-        """Bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and what differences are known to.
+        """Return bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and the errors of differences.
 
-        A sparse matrix of a sparse problem, None of one without a matrix.
+        Sparse if F_u is sparse; None if F_u is matrix-free.
         """
         matrix = work.jacobian
         if isinstance(matrix, Operator):
@@ -300,14 +301,14 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return found
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
-        """Why a branch ends where Newton's method fails, as far as that can be determined; else an empty string.
+        """Return the reason why Newton's method fails at the end of a branch; empty if it cannot be determined.
 
         Parameters
         ----------
         u, p, tangent
-            The last point, and the unit tangent in which the branch was followed.
+            The last point, and the unit tangent in the direction of the trace.
         evaluable : bool
-            False: the equations could not be evaluated further on.
+            False if the equations could not be evaluated at the next point.
         """
         if not evaluable:
             return self.trouble
@@ -345,7 +346,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         return ""
 
     def check(self, u: np.ndarray, p: float) -> str | None:
-        """A sentence on given derivatives that disagree with the equations at a solution; None if they agree."""
+        """Compare given derivatives with differences of the equations at a solution: a sentence if they disagree, else None."""
         scales = self.scales
         if scales is not None and not len(u) == len(scales.unknowns) == len(self.functions.lengths):
             scales = None
@@ -364,7 +365,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         self._check_symmetries()
 
     def _check_symmetries(self) -> None:
-        """Refuse a symmetry of which the equations know nothing, once for each choice of parameters."""
+        """Raise ValueError if the equations do not have a given symmetry; checked once for each choice of parameters."""
         values = self.values
         key = (values.varying, *sorted(item for item in values.values.items() if item[0] != values.varying))
         if not self.generators or key in self.symmetric_for:
@@ -376,7 +377,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         self.symmetric_for.add(key)
 
     def in_own_pieces(self) -> Callable[[np.ndarray, float], np.ndarray]:
-        """The equations, each state in the piece in which it lies."""
+        """Return the function (u, p) -> F that takes the signs of the switches from u."""
         if not self.pieces.count:
             return self.functions.value
         pieces = self.pieces.repeated(1, 1)

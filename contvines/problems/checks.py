@@ -1,4 +1,4 @@
-"""Given derivatives compared with differences of the equations."""
+"""Checks of a user's equations: given derivatives against differences, empty rows, kinks and jumps."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 def disagreement(
     functions: Differentiated, u: np.ndarray, p: float, scales: Scales | None = None
 ) -> str | None:
-    """A sentence on where given derivatives disagree with differences of f at a point; None if they do not.
+    """Compare given derivatives with differences of f at a point: a sentence with the wrong entry, or None if they agree.
 
-    One random direction tells; entries are looked at one by one only if it does. With `scales`, what is rounding in the units of
-    unknowns, parameter and rows is no disagreement.
+    The derivative along one random direction is compared; single entries only if it disagrees. With `scales`, differences below
+    the rounding errors in the units of unknowns, parameter and rows are ignored.
 
     Raises
     ------
@@ -36,10 +36,10 @@ def disagreement(
 
 
 def empty_row(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
-    """A sentence on an entry of f that is zero at the start and all round it, and so is no equation; None if there is none."""
+    """Return a sentence if an entry of f is zero at the start and at all points around it, so that it is no equation; else None."""
     draw = np.random.default_rng(8)
     zero, name = functions.value(u, p) == 0.0, functions.parameters.varying
-    for reach in (10.0**k for k in range(-3, 3)):  # far, too: an equation may be flat where it starts
+    for reach in (10.0**k for k in range(-3, 3)):  # far away, too: an equation may be flat near the start
         step, shift = (
             reach * functions.lengths * draw.uniform(-1.0, 1.0, len(u)),
             reach * draw.uniform(-1.0, 1.0),
@@ -138,7 +138,7 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
 def _wrong_entry(
     functions: Differentiated, matrix: np.ndarray | csc_array | Operator, u: np.ndarray, p: float, i: int
 ) -> tuple[int, float, float] | None:
-    """Of a row the entry that is most wrong: its column, the given number and the one by differences."""
+    """The entry of row i with the largest error: its column, the given number and the number by differences."""
     n = len(u)
     if isinstance(matrix, Operator):
         return None
@@ -153,13 +153,13 @@ def _wrong_entry(
     return result
 
 
-POINTS = 24  # on the line, each time it is looked at more closely
-ROUNDS = 7
-NOISY = 20.0  # times the noise, second differences say nothing
+POINTS = 24  # intervals of the line in each round
+ROUNDS = 7  # each round samples the four intervals around the largest second difference
+NOISY = 20.0  # second differences below this multiple of the noise are not used
 
 
 class Break(NamedTuple):
-    """A place on a line where a function is not smooth: ``kind`` is "kink" or "jump", ``row`` the entry that is worst."""
+    """A point ``at`` of a line where a function is not smooth: ``kind`` is "kink" or "jump", ``row`` the entry with the largest one."""
 
     kind: str
     at: float
@@ -169,10 +169,10 @@ class Break(NamedTuple):
 def find_break(
     f: Callable[[float], np.ndarray], length: float, rows: np.ndarray, noise: float | np.ndarray = 0.0
 ) -> Break | None:
-    """The sharpest kink or jump of f between -length and length, or None.
+    """Find the sharpest kink or jump of f between -length and length; None if there is none.
 
-    The function is sampled, and looked at again where its second difference is largest. In the end the slopes on both sides differ
-    at a kink as they did from afar, and at a jump so do the values; a smooth function has become straight.
+    The function is sampled, then sampled again, more finely, around the largest second difference. On the shrinking interval the slopes
+    on both sides of a kink, or the values on both sides of a jump, keep their difference, while a smooth function becomes straight.
 
     Parameters
     ----------
@@ -180,9 +180,9 @@ def find_break(
         t -> ndarray of shape (n,); not finite where it cannot be evaluated.
     length : float
     rows : ndarray, shape (n,)
-        How much the entries change when t changes by 1, roughly.
+        Typical change of each entry when t changes by 1.
     noise : float or ndarray
-        Standard deviation of f: what is no larger than a few of it is neither kink nor jump.
+        Standard deviation of f; smaller breaks are not reported.
     """
     low, high, t, values, k, step = -length, length, np.zeros(0), rows, 0, 0.0
     for _ in range(ROUNDS):

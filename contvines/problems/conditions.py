@@ -1,11 +1,11 @@
-"""Conditions: what picks one solution from a continuous family of equivalent ones.
+"""Conditions that select one solution from a continuous family of equivalent ones.
 
-A continuous symmetry makes every solution that it moves one of a family, and dF/du singular. With one condition g(u, p) = 0 for
+A continuous symmetry moves a solution along a family of solutions, so that dF/du is singular. With one condition g(u, p) = 0 for
 each such symmetry, and one more unknown a for each condition, the system
 
     F(u, p) + a c = 0,   g(u, p) = 0,   c = dg/du at the start
 
-is regular again, and a = 0 on its solutions where c is not orthogonal to the left null vector (for gradients F never).
+is regular, and a = 0 on its solutions if c is not orthogonal to the left null vector (if F is a gradient, it never is).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .spectra import without_roundoff
 
 
 class Conditions:
-    """Conditions and their multipliers.
+    """Conditions, and the extended equations with one unknown (a multiplier) for each.
 
     Parameters
     ----------
@@ -54,13 +54,13 @@ class Conditions:
         self.directions = (gradient / sizes[:, None]).T
 
     def extended(self, u: np.ndarray) -> np.ndarray:
-        """u with multipliers zero."""
+        """Append a zero multiplier for each condition to u."""
         return np.append(u, np.zeros(self.count))
 
     def equations(
         self, u: np.ndarray, p: float, functions: Differentiated, values: ParameterSet
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The larger system, its Jacobian and its parameter derivative."""
+        """Return the extended system, its Jacobian and its parameter derivative."""
         n, own, amounts = self.node, u[: self.node], u[self.node :]
         self.functions.parameters = values
         jacobian = np.zeros((n + self.count, n + self.count))
@@ -74,7 +74,7 @@ class Conditions:
         )
 
     def eigenvalues(self, jacobian: np.ndarray) -> np.ndarray:
-        """Eigenvalues of dF/du but for the zeros that belong to the symmetries."""
+        """Return the eigenvalues of dF/du without the zeros of the continuous symmetries."""
         n = self.node
         right, left = null_space(jacobian[n:, :n]), null_space(self.directions.T)
         return without_roundoff(

@@ -1,4 +1,4 @@
-"""Interpreted kernels with a dense Jacobian, for problems made of Python callables; and what those with a sparse one share with them."""
+"""Kernels in Python with a dense Jacobian, for problems made of Python callables; `inspect` and `assign` serve sparse Jacobians, too."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ if TYPE_CHECKING:
     from .scales import Scales
 
 
-# solves and hands out the factors (scipy's getrs starts threads for the smallest matrices); 1 / largest entry of each row
+# gesv solves and returns the factors (scipy's getrs starts threads even for small matrices); geequ returns 1 / largest entry of each row
 FACTORISE_AND_SOLVE, ROWS = get_lapack_funcs(("gesv", "geequ"), dtype=np.float64)
-EVEN = 0.1  # rows whose sizes differ by less than this are left as they are; LAPACK's own threshold (dlaqge)
+EVEN = 0.1  # smallest ratio of row sizes at which rows are not scaled; LAPACK's own threshold (dlaqge)
 
 
-# BLAS for short vectors, at every point: numpy's own functions take three times as long
+# BLAS functions for short vectors: numpy's take three times as long, and these are called at every point
 dot = blas.ddot  # type: ignore[attr-defined]
 """``dot(x, y, n)``: the inner product (of the first n entries)."""
 position = blas.idamax  # type: ignore[attr-defined]
-"""``position(x)``: where the largest absolute value stands."""
+"""``position(x)``: index of the largest absolute value."""
 
 
 class Equations(Protocol):
-    """What the kernels read of a problem made of Python callables, their `data`."""
+    """The `data` of these kernels: members of a problem made of Python callables that they read."""
 
     values: ParameterSet
     scales: Scales | None
@@ -59,12 +59,12 @@ class Equations(Protocol):
 
 
 class DenseWork:
-    """F, F_u, F_p, and room for the bordered matrix with its right-hand sides.
+    """F, F_u, F_p, and the bordered matrix with its right-hand sides.
 
-    F_u, F_p and F are parts of ``table``, whose last row is zero: (F_u, F_p | F, 0). A third right-hand side is watched where it is
-    there: ``image`` is its solution, in units of the scales, and tells how near the matrix is to a singular one. ``matrix`` is the
-    same in units of the scales, with the border as last row; ``square``, ``last``, ``diagonal`` and ``sides`` are parts of it.
-    Solutions take the place of the right-hand sides. Units are made anew when the scales of a problem change (`take_units`).
+    ``table`` contains F_u, F_p and F, and a last row of zeros: (F_u, F_p | F, 0). ``matrix`` is the same in units of the scales, with
+    the border as last row; ``square``, ``last``, ``diagonal`` and ``sides`` are views of its parts. Solutions overwrite the right-hand
+    sides. If `watched`, there is a third right-hand side (`Equations.side`); its solution ``image``, in units of the scales, measures how
+    near the matrix is to a singular one. `take_units` updates the units when the scales of the problem change.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class DenseWork:
         return (self.residual, self.jacobian, self.derivative)[i]
 
     def take_units(self, data: Equations) -> None:
-        """What the entries of ``table`` are multiplied with, of a problem as it is now; the right-hand side that is watched comes with them."""
+        """Compute the factors of the entries of ``table`` from the problem's scales, and set the third right-hand side."""
         size = len(self.last)
         scales = self.scales = data.scales
         rows, columns = (np.ones(size - 1), np.ones(size)) if scales is None else (scales.rows, scales.vector)
@@ -109,7 +109,7 @@ class DenseWork:
 
 
 def workspace(problem: Problem) -> DenseWork:
-    """Arrays for a problem."""
+    """Return the arrays for a problem."""
     return DenseWork(problem.dimension, isinstance(problem, Nearing) and problem.many)
 
 
@@ -131,7 +131,7 @@ def linearise(data: Equations, u: np.ndarray, p: float, work: DenseWork) -> floa
         except (ArithmeticError, ValueError, np.linalg.LinAlgError):
             return math.inf
         sizes = np.divide(work.residual, work.rows, out=work.parts)
-    # a sum is finite if its terms are, but for an overflow, which would not do either
+    # the sum is finite if and only if all entries are, apart from overflow, which counts as a failure, too
     total = dot(work.flat, work.ones)
     if total - total == 0.0:
         return abs(float(sizes[position(sizes)]))
@@ -142,9 +142,9 @@ def linearise(data: Equations, u: np.ndarray, p: float, work: DenseWork) -> floa
 def bordered(
     data: Equations, work: DenseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
-    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant.
+    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); return the sign of the determinant.
 
-    One factorisation, of the matrix in units of the scales, with rows made equally large where they are not.
+    One factorisation serves both. The matrix is in units of the scales, with its rows scaled to equal size if they differ.
     """
     sides = work.sides
     if work.scales is not data.scales:
@@ -165,7 +165,7 @@ def bordered(
 
 
 def _least(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """Solutions with a singular matrix, large along its null vectors; NaN where it is not finite."""
+    """Solutions for a singular matrix, large along its null vectors; NaN if the matrix is not finite."""
     if not np.isfinite(matrix).all():
         return np.full(sides.shape, np.nan)
     left, values, right = np.linalg.svd(matrix)
@@ -175,7 +175,7 @@ def _least(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
 
 
 def _equilibrate(work: DenseWork, border: np.ndarray, n: float) -> None:
-    """The bordered matrix and its right-hand sides (F, -n) and (0, 1), with rows of about one size."""
+    """Write the bordered matrix and its right-hand sides (F, -n) and (0, 1) into the workspace, with rows of similar size."""
     last, ends = work.last, work.ends
     np.multiply(work.table, work.units, out=work.matrix)
     np.multiply(border, work.columns, out=last)
@@ -192,12 +192,12 @@ def _equilibrate(work: DenseWork, border: np.ndarray, n: float) -> None:
 
 
 def distance_to_singular(data: Equations, work: DenseWork) -> float:
-    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.spectra`."""
+    """Return 1/|M^-1 b| for the bordered matrix M of the last solution; see :mod:`.spectra`."""
     return distance(work.image)
 
 
 def nearest_eigenvalues(data: Equations, work: DenseWork) -> np.ndarray:
-    """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
+    """Return the eigenvalues of F_u nearest to zero, relative to F_u at the first call (the reference)."""
     if not isinstance(data.reference, np.ndarray):
         data.reference = reference_of(work.jacobian, *data.sizes())
     values = without_roundoff(np.linalg.eigvals(data.reference @ work.jacobian))
@@ -207,23 +207,23 @@ def nearest_eigenvalues(data: Equations, work: DenseWork) -> np.ndarray:
 
 
 def matrix(data: Equations, work: DenseWork) -> np.ndarray:
-    """F_u as it stands in a workspace."""
+    """Return a copy of F_u in a workspace."""
     return work.jacobian.copy()
 
 
 def flip(data: Any, work: DenseWork, sign: float) -> None:
-    """Turn the closure of a cycle round (sign = -1), and back (sign = 1); see the protocol."""
+    """Change the closure x_n = x_0 of a cycle in F_u to x_n = -x_0 (sign = -1), or back (sign = 1); see the protocol."""
     data.turn_closure(work.jacobian, sign)
 
 
 def transpose(data: Equations, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
-    """The transposed Jacobian, with another last column, into another workspace."""
+    """Write the transposed Jacobian, and another last column, into another workspace."""
     other.jacobian[:] = work.jacobian.T
     other.derivative[:] = column
 
 
 def inspect(data: Equations, u: np.ndarray, p: float, work: Linearised, row: np.ndarray) -> None:
-    """Raw spectrum of the linearisation, then the margins of problems that have any."""
+    """Write the raw spectrum of the linearisation into `row`, then the margins if the problem has any."""
     spectrum = data.raw_spectrum(work)
     m = 2 * len(spectrum)
     row[:m].view(np.complex128)[:] = spectrum
@@ -232,7 +232,7 @@ def inspect(data: Equations, u: np.ndarray, p: float, work: Linearised, row: np.
 
 
 def not_finite(residual: np.ndarray, jacobian: np.ndarray, derivative: np.ndarray) -> str:
-    """A sentence on what is not a finite number, and in which row."""
+    """Return a sentence with the first of F, F_u and F_p that is not finite, and the row."""
     names = (
         ("F", residual),
         ("the derivative of F in the unknowns", jacobian),
@@ -246,7 +246,7 @@ def not_finite(residual: np.ndarray, jacobian: np.ndarray, derivative: np.ndarra
 
 
 def assign(data: Equations, other: Equations, value: float) -> None:
-    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+    """Set, in ``data`` and in place, the parameter that varies in ``other``."""
     data.values.assign(other.parameter, value)
 
 

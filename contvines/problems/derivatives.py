@@ -1,4 +1,4 @@
-"""A user's equations with their derivatives: given ones, the complex step where the function allows it, else differences."""
+"""A user's equations with their derivatives: given ones, else by the complex step if the function allows it, else by differences."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from .large.jacobians import Colouring
 
-BESIDE = (-0.37, 0.41)  # lengths aside where noise is there as well
+BESIDE = (-0.37, 0.41)  # positions, in lengths from the start, where noise is measured a second time
 
 
 class Differentiated:
@@ -35,36 +35,36 @@ class Differentiated:
     jacobian : callable, optional
         (u, p) -> (n, n): an array, a sparse matrix or a LinearOperator.
     derivative : callable, optional
-        (u, p) -> (n,), with respect to p; of several parameters a mapping of such callables by name.
+        (u, p) -> (n,), with respect to p; for several parameters a mapping of callables by name.
     u : ndarray, shape (n,)
-        Where f is measured: lengths over which it bends, noise, whether the complex step works.
+        Point at which f is examined: lengths over which it is nonlinear, noise, whether the complex step works.
     parameters : ParameterSet
     name : str
         Of f, for messages.
     sparsity : Colouring, optional
-        Where the Jacobian has entries at all.
+        Sparsity pattern of the Jacobian.
     start_name, called : str
-        What u is called, and with what f is called, for messages.
+        Name of u and description of the arguments of f, for messages.
 
     Attributes
     ----------
     lengths : ndarray, shape (n,)
-        Over which f bends in each unknown; where it does not, the unknown's size, or 1.
+        Change of each unknown over which f is nonlinear; where f is linear, the unknown's size, or 1 if that is zero.
     bends : ndarray of bool, shape (n,)
-        Where it does.
+        Whether f is nonlinear in each unknown.
     known : ndarray of bool, shape (n,)
-        Where the length comes from f or from the unknown itself, and is not just 1.
+        Whether the length comes from f or from the unknown itself; else it is just 1.
     noise : ndarray, shape (n,)
-        Standard deviation of each entry of f beyond roundoff.
+        Standard deviation of each entry of f; 0 where it is only roundoff.
     grain : ndarray, shape (n,)
-        The same with roundoff.
+        The same, with roundoff.
     errors : ndarray, shape (n,)
         Estimated errors of the columns of the last Jacobian.
 
     Raises
     ------
     ValueError
-        If f, or a given derivative, will not do at u; the sentence says why.
+        If f, or a given derivative, is unusable at u; the message gives the reason.
     """
 
     def __init__(
@@ -83,14 +83,14 @@ class Differentiated:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.parameters, self.name = parameters, name
         self.structure = "dense"
-        self.words = ""  # of the last failure beside a point
-        self.rows = 0  # numbers that f returns, where these are not as many as unknowns
+        self.words = ""  # message of the last failure next to a point
+        self.rows = 0  # length of f's result if it differs from the number of unknowns, else 0
         self._bind()
         p, n = parameters.start, len(u)
         begin = thread_time()
         value = self.checked_value(u, p)
         cost = thread_time() - begin
-        if cost > DERIVATIVES.brief:  # the first call may do more than the others
+        if cost > DERIVATIVES.brief:  # the first call may include compilation or caching
             begin = thread_time()
             value = self.checked_value(u, p)
             cost = min(cost, thread_time() - begin)
@@ -101,7 +101,7 @@ class Differentiated:
         self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
         self._measure_lengths(u, p, cost, 0.0)
         self._measure_noise(u, p, value)
-        if self.noise.any():  # which may have been taken for bends
+        if self.noise.any():  # the noise may have been mistaken for nonlinearity
             self._measure_lengths(u, p, cost, self.grain)
         if (jacobian is None or self.given_slope is None) and not self.noise.any():
             self.complex_step = self._complex_step_works(u, p)
@@ -118,7 +118,7 @@ class Differentiated:
         )
 
     def against(self, parameters: ParameterSet) -> Differentiated:
-        """The same callable with other parameters."""
+        """Return the same callable with other parameters."""
         other = copy(self)
         other.parameters = parameters
         other._bind()
@@ -132,14 +132,14 @@ class Differentiated:
         name: str | None = None,
         rows: int = 0,
     ) -> Differentiated:
-        """The same measurements for a similar callable.
+        """Return a similar callable with the lengths and noise of this one.
 
         Parameters
         ----------
         f, jacobian, derivative : callables
         name : str, optional
         rows : int
-            How many numbers f returns, if not one for each unknown.
+            Length of f's result, if it is not one number for each unknown.
         """
         other = copy(self)
         other.f, other.given_jacobian, other.given_derivative = f, jacobian, derivative
@@ -150,9 +150,9 @@ class Differentiated:
         return other
 
     def find_structure(self, u: np.ndarray, preconditioned: bool = False) -> str:
-        """ "dense", "sparse" or "operator": what a given Jacobian is at the start; remembered as ``structure``.
+        """Determine the structure of the Jacobian at the start, "dense", "sparse" or "operator", and store it as ``structure``.
 
-        An operator without a preconditioner is "sparse" where it is worth being written out.
+        A LinearOperator without a preconditioner counts as "sparse" if writing out its matrix is cheaper than GMRES.
         """
         if self.given_matrix is not None:
             matrix = as_matrix(self.given_matrix.raw(u, self.parameters.start), len(u))
@@ -168,7 +168,13 @@ class Differentiated:
 
     # ------------------------------------------------------------------ values
     def checked_value(self, u: np.ndarray, p: float) -> np.ndarray:
-        """f(u, p), or a ValueError that says what is wrong with it at a start."""
+        """Return f(u, p) at a start.
+
+        Raises
+        ------
+        ValueError
+            If f fails, or its result has a wrong shape or is not finite.
+        """
         where = f"at the start {self._where(u, p)}"
         try:
             with np.errstate(all="ignore"):
@@ -193,11 +199,11 @@ class Differentiated:
         return f"{self.start_name} = {np.array2string(u, threshold=6)}, {self.parameters.varying} = {p:.10g}"
 
     def value(self, u: np.ndarray, p: float) -> np.ndarray:
-        """f(u, p) as float array."""
+        """Return f(u, p) as a flat array."""
         return self._value(u, p)
 
     def jacobian(self, u: np.ndarray, p: float) -> np.ndarray | csc_array | Operator:
-        """df/du, shape (n, n), as an array, or as it was given if that is sparse or a LinearOperator."""
+        """Return df/du, shape (n, n): an array, or a sparse matrix or LinearOperator if the user gave one."""
         n = len(u)
         if self.given_matrix is not None:
             self.errors = self.exact
@@ -223,13 +229,13 @@ class Differentiated:
         return result
 
     def dense_jacobian(self, u: np.ndarray, p: float) -> np.ndarray:
-        """df/du where it is an array."""
+        """Return df/du, which must be an array."""
         found = self.jacobian(u, p)
         assert isinstance(found, np.ndarray)
         return found
 
     def _coloured(self, sparsity: Colouring, u: np.ndarray, p: float) -> csc_array:
-        """The sparse Jacobian, with as many differences as there are groups of columns."""
+        """Return the sparse Jacobian by one difference for each group of columns."""
         n = len(u)
         worst = np.zeros(n)
 
@@ -250,7 +256,7 @@ class Differentiated:
         return matrix
 
     def column(self, u: np.ndarray, p: float, j: int) -> Difference:
-        """df/du_j by differences."""
+        """Return df/du_j by differences."""
 
         def shifted(t: float) -> np.ndarray:
             moved = u.copy()
@@ -265,7 +271,7 @@ class Differentiated:
         return found
 
     def derivative(self, u: np.ndarray, p: float) -> np.ndarray:
-        """df/dp, shape (n,)."""
+        """Return df/dp, shape (n,)."""
         if self.given_slope is not None:
             return self.given_slope(u, p)
         if self.complex_in_parameter(u, p):
@@ -274,16 +280,16 @@ class Differentiated:
         found = self._evaluable(along(line, self.parameter_length(u, p), self.noise))
         return found.value
 
-    # ------------------------------------------------------------------ what f is like
+    # ------------------------------------------------------------------ lengths, noise, complex step
     def complex_in_parameter(self, u: np.ndarray, p: float) -> bool:
-        """Whether the complex step gives the derivative by the parameter that varies, of which f may take the magnitude; tried once for each parameter."""
+        """Whether the complex step works for the varying parameter (not if f contains its magnitude); tested once for each parameter."""
         name = self.parameters.varying
         if name not in self.complex_parameters:
             self.complex_parameters[name] = self.complex_step and self._complex_step_works(u, p)
         return self.complex_parameters[name]
 
     def parameter_length(self, u: np.ndarray, p: float) -> float:
-        """Length over which f bends in the parameter that varies; measured once for each parameter."""
+        """Change of the varying parameter over which f is nonlinear; measured once for each parameter."""
         name = self.parameters.varying
         if name not in self.parameter_lengths:
             found = bend(self.quietly(lambda t: self._value(u, p + t)), abs(p) or 1.0, noise=self.grain)
@@ -291,7 +297,7 @@ class Differentiated:
         return self.parameter_lengths[name]
 
     def quietly(self, line: Callable[[Any], np.ndarray]) -> Callable[[Any], np.ndarray]:
-        """The function with NaN where it cannot be evaluated."""
+        """Return the function with results NaN where it raises NotEvaluable."""
         n = len(self.noise)
 
         def value(t: float | np.ndarray) -> np.ndarray:
@@ -319,10 +325,11 @@ class Differentiated:
             noise = noise_of(line, DERIVATIVES.spacing)
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
             floor = DERIVATIVES.rounded * np.maximum(change, 0.001 * change.max(initial=0.0))
-            if (noise > floor).any():  # that of one place alone, as at the root of |u|, is a singularity
+            # if only this point has it, it is a singularity, such as that of |u| at 0
+            if (noise > floor).any():
                 beside = [noise_of(lambda t, s=s: line(s + t), DERIVATIVES.spacing) for s in BESIDE]
                 noise = np.where((noise > floor) & (np.max(beside, axis=0) <= floor), 0.0, noise)
-            # between the stairs of a staircase neighbouring samples tell nothing
+            # a staircase: close samples lie on the same stair, so that only wide ones show the steps
             steps = roughness(line)
             noise = np.where(
                 (noise <= floor) & (steps > floor) & (steps < DERIVATIVES.steep * change), steps, noise
@@ -332,7 +339,7 @@ class Differentiated:
             self.grain, self.noise = noise, np.where(rough, noise, 0.0)
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
-        """Whether imaginary parts are derivatives: compared with differences along a direction beside the start."""
+        """Whether the complex step works: compare it with differences along a random direction next to the start."""
         rng = np.random.default_rng(0)
         u = u + DERIVATIVES.aside * self.lengths * rng.standard_normal(len(u))
         direction = self.lengths * rng.standard_normal(len(u))
@@ -341,7 +348,7 @@ class Differentiated:
             with np.errstate(all="ignore"), catch_warnings():
                 simplefilter(
                     "ignore"
-                )  # what casts complex numbers to real ones warns, and is found out below
+                )  # numpy warns when f casts complex numbers to real ones; the comparison detects that
                 shifted = self._value(u + 1j * COMPLEX_STEP * direction, complex(p, COMPLEX_STEP * slope))
                 exact = np.imag(shifted) / COMPLEX_STEP
                 near = along(lambda t: self._value(u + t * direction, p + t * slope), 0.5, self.noise)
@@ -353,6 +360,6 @@ class Differentiated:
 
 
 def agreeing(exact: np.ndarray, near: Difference) -> bool:
-    """Whether a derivative by the complex step is the one by differences."""
+    """Whether a derivative by the complex step agrees with one by differences."""
     rows = np.abs(near.value) + DERIVATIVES.faint * np.abs(near.value).max(initial=0.0)
     return bool(np.all(np.abs(exact - near.value) <= DERIVATIVES.agree * rows + 10.0 * near.error))

@@ -1,4 +1,4 @@
-"""Differences with an error estimate, and what they tell of a function: lengths over which it bends, its noise."""
+"""Derivatives by differences with an error estimate; the length over which a function is nonlinear; its noise."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from contvines.shared.numbers import EPSILON
 
 from .settings import DERIVATIVES
 
-STEP = 0.006  # part of a length: roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
+STEP = 0.006  # step as part of the length: roundoff eps/STEP and truncation STEP^6/140 are equal near 1e-14
 # sixth-order central difference: weights of f(x + k h) - f(x - k h), Fornberg, Math. Comp. 51 (1988) 699, table 1
 SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
 FOURTH = (2.0 / 3.0, -1.0 / 12.0)
-FACTOR = 64.0  # between the lengths that are tried by `bend`
-ASIDE = 1.37  # ratio of two lengths at which slopes are compared
-HALVINGS = 5  # of the factor between two of them, to find where f has bent
-MANY = 64  # rows of fewer are asked one by one
-CLOSER = 20  # halvings after which a continuous function has hardly changed any more
-REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
+FACTOR = 64.0  # ratio of successive lengths that `bend` tries
+ASIDE = 1.37  # ratio of two lengths whose slopes are compared: equal slopes are no rounding
+HALVINGS = 5  # bisections between two tried lengths, to find where f becomes nonlinear
+MANY = 64  # rows above which a row is examined only if its length is clearly shorter than the best so far
+CLOSER = 20  # bisections after which a continuous function has hardly any change left
+REACH = 9  # lengths that `bend` tries on either side of the guess: sixteen orders of magnitude
 
-CLOSER_TABLES = 5  # of differences, each a thousand times closer than the one before
-# stretches over which samples are compared with polynomials, as parts of a length; samples on each; degree
+CLOSER_TABLES = 5  # tables of differences after the first, each with samples a thousand times closer
+# lengths of the stretches on which samples are fitted by polynomials; samples on each; degree of the polynomials
 STRETCHES, SAMPLES, DEGREE = (0.1, 0.02, 0.004, 0.0008), 20, 8
 
 Line = Callable[[float], np.ndarray]
 
 
 class Difference(NamedTuple):
-    """A derivative, the estimated error of each of its entries, and whether that is roundoff: a smaller step does not help."""
+    """A derivative ``value``, the estimated ``error`` of each entry, and whether roundoff dominates it (``settled``: a smaller step does not help)."""
 
     value: np.ndarray
     error: np.ndarray
@@ -41,8 +41,8 @@ class Difference(NamedTuple):
 def central(f: Line, h: float, noise: float | np.ndarray = 0.0) -> Difference:
     """Sixth-order central difference at 0.
 
-    The error is estimated from the difference to the fourth-order one, of which a hundredth is kept (for a function that bends
-    over a length L the ratio of the two errors is about (h/L)^2), and from the roundoff of f.
+    The estimated error is one hundredth of the distance from the fourth-order difference (for a function that is nonlinear over a
+    length L the ratio of the two errors is about (h/L)^2), plus the roundoff and noise of f.
 
     Parameters
     ----------
@@ -71,14 +71,14 @@ def along(f: Line, length: float, noise: float | np.ndarray = 0.0) -> Difference
     f : callable
         t -> ndarray.
     length : float
-        Over which f may bend; the first step is a small part of it, the larger the more noise there is.
+        Length over which f may be nonlinear; the first step is a small part of it, a larger part if f has noise.
     noise : float or ndarray
         Standard deviation of f beyond roundoff.
 
     Returns
     -------
     Difference
-        The best of those tried; not finite where f cannot be evaluated.
+        The one with the smallest estimated error; not finite if f cannot be evaluated.
     """
     found = best = central(f, STEP * length, noise)
     least = _worst(best)
@@ -100,13 +100,13 @@ def along(f: Line, length: float, noise: float | np.ndarray = 0.0) -> Difference
 
 
 def _worst(found: Difference) -> float:
-    """Largest error; infinity where it is not finite."""
+    """Largest error; infinity if the derivative is not finite."""
     error = float(found.error.max(initial=0.0))
     return error if np.isfinite(error) and np.isfinite(found.value).all() else np.inf
 
 
 def _relative(found: Difference) -> float:
-    """Largest error relative to the largest entry; infinity where it is not finite."""
+    """Largest error relative to the largest entry; infinity if they are not finite."""
     size, error = float(np.abs(found.value).max(initial=0.0)), float(found.error.max(initial=0.0))
     if not np.isfinite(size + error):
         return np.inf
@@ -114,10 +114,10 @@ def _relative(found: Difference) -> float:
 
 
 def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray = 0.0) -> float | None:
-    """Length over which f stops being linear; None if it is linear, or no power law ends.
+    """Find the length over which f is nonlinear; None if it is linear, or a power law, at all lengths.
 
-    The change of f grows like t as long as t is small; the length is where it is by half as much again, or less. What seems to
-    bend where f has steps is rounding: then larger t are asked.
+    For small t the change of f is proportional to t; at the length it deviates from that by half. Where rounding makes f a staircase it
+    only seems nonlinear, and larger t are tried.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
     guess : float
         Lengths around this one are tried.
     enough : int
-        How many on either side.
+        Number of lengths on either side of the guess.
     noise : float or ndarray
         Standard deviation of f beyond roundoff.
     """
@@ -142,11 +142,11 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
         seen = np.abs(odd) > floor + DERIVATIVES.cancelled * EPSILON * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
-        # where rounding makes stairs of f, or it is a power, it is not linear
+        # slopes at t and at ASIDE t differ where f is a staircase of rounding, or another power of t
         seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
         found, many = np.inf, odd.shape[1] > MANY
         for r in range(odd.shape[1]):
-            # of many rows those that bend within the same factor are as good as one another: each asked costs evaluations of all
+            # of many rows, one within the same factor of the best is not examined: each costs evaluations of all rows
             least = found / FACTOR if many else found
             there = float(here[r])
             found = min(
@@ -161,7 +161,7 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
 
 
 def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.ndarray) -> float:
-    """Length up to which a function that is even grows like a square; infinity where it does all the way."""
+    """Length up to which an even function grows like t^2; infinity if it does so at all lengths."""
     curvature = even / lengths[:, None] ** 2
     beside = np.array([0.5 * (f(ASIDE * t) + f(-ASIDE * t)) for t in lengths]) - f(0.0)
     beside /= (ASIDE * lengths[:, None]) ** 2
@@ -188,7 +188,7 @@ def _bend_of_row(
     least: float,
     felt: float,
 ) -> float:
-    """Length over which row r bends, infinity where it does not, or not below `least`."""
+    """Length over which row r is nonlinear; infinity if it is linear, or if the length is above `least`."""
     k = 0
     finite = np.isfinite(slope) & np.isfinite(even)
     for first in np.flatnonzero(seen):
@@ -219,22 +219,22 @@ def noise_of(f: Line, spacing: float) -> np.ndarray:
     """Noise of each entry of f: its standard deviation, from tables of differences.
 
     More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33 (2011) 1292: the k-th difference of noise of
-    variance s^2 has variance s^2 (2 k)!/(k!)^2, while that of a smooth function vanishes. What becomes less when the samples are a
-    thousand times closer is no noise.
+    variance s^2 has variance s^2 (2 k)!/(k!)^2, while that of a smooth function vanishes. An estimate that falls when the samples are a
+    thousand times closer is not noise.
 
     Parameters
     ----------
     f : callable
         t -> ndarray.
     spacing : float
-        Between the samples at first.
+        Distance between the samples of the first table.
     """
     before, _ = _table(f, spacing)
     found, falling = before, np.ones(before.shape, dtype=bool)
     for _ in range(CLOSER_TABLES):
         spacing *= 0.001
         here, still = _table(f, spacing)
-        falling &= ~still  # between two stairs, or two numbers of the machine, there is nothing to be seen
+        falling &= ~still  # samples on one stair, or between two floating-point numbers, show no noise
         less = here < 0.03 * before
         found = np.where(falling, np.where(less, here, np.maximum(before, here)), found)
         falling &= less
@@ -245,10 +245,10 @@ def noise_of(f: Line, spacing: float) -> np.ndarray:
 
 
 def roughness(f: Line) -> np.ndarray:
-    """Noise of each entry of f that is a staircase, or has jumps, so that it vanishes where samples are close together.
+    """Noise of each entry of f that is a staircase or has jumps, which close samples do not show.
 
-    What polynomials of degree DEGREE leave of samples over stretches that shrink: of a smooth function that falls with a high power of the
-    stretch, of steps it stays the same as long as there are several of them.
+    Polynomials of degree DEGREE are fitted to samples on shrinking stretches. The residual of a smooth function falls with a high power
+    of the stretch; that of a staircase stays the same as long as the stretch contains several steps.
     """
     places = np.modf(0.5 + 0.618033988749895 * np.arange(SAMPLES))[0] * 2.0 - 1.0
     basis, _ = np.linalg.qr(np.polynomial.chebyshev.chebvander(places, DEGREE))
@@ -268,7 +268,7 @@ def roughness(f: Line) -> np.ndarray:
 
 
 def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Noise of each entry from one table of differences, and whether most of its neighbours are one and the same number."""
+    """Noise of each entry from one table of differences, and whether most neighbouring samples are identical."""
     table = np.array([f(k * spacing) for k in range(9)])
     still = np.count_nonzero(np.diff(table, axis=0), axis=0) < 4
     estimates = []
@@ -281,15 +281,15 @@ def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _continuous(f: Line, t: float, r: int, felt: float) -> bool:
-    """Whether entry r of f, or of its mirror image, is continuous near t: no stairs that rounding makes of terms that cancel.
+    """Whether entry r of f is continuous near t and near -t, and no staircase of rounding of terms that cancel.
 
-    Jumps up to `felt` are noise that is known.
+    Jumps up to `felt` are known noise and ignored.
     """
     for side in (t, -t):
         places = side * np.linspace(0.3, 1.2, 10)
         values = np.array([float(f(place)[r]) for place in places])
         if not np.isfinite(values).all():
-            return True  # it cannot be evaluated there, which is a length, too
+            return True  # the end of the domain of f is a length, too
         k = int(np.argmax(np.abs(np.diff(values))))
         (low, high), (before, after) = places[k : k + 2], values[k : k + 2]
         whole = abs(after - before)
@@ -306,14 +306,15 @@ def _continuous(f: Line, t: float, r: int, felt: float) -> bool:
 
 
 def coupling(f: Callable[[float, float], np.ndarray], guess: float) -> float | None:
-    """Size of an unknown that decides how f changes with another one, though f is linear in either; None if it does not.
+    """Size of an unknown from a bilinear term with another unknown; None if there is no such term.
 
-    The change of f with the other unknown grows linearly with this one; the size is where it has doubled, or gone to zero.
+    The derivative of f by the other unknown changes linearly with this one; the size is the change at which that derivative has doubled
+    or vanished.
 
     Parameters
     ----------
     f : callable
-        (t, s) -> ndarray; this unknown is changed by t, the other one by the length over which f bends in it if s = 1.
+        (t, s) -> ndarray; this unknown is changed by t, the other one by s times its length.
     guess : float
         Sizes around this one are tried.
     """
@@ -331,7 +332,7 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float) -> float | N
             mixed, floor = both(t)
             seen = plain & (mixed > floor) & np.isfinite(mixed)
             if seen.any():
-                # where terms of this unknown cancel in a row, their rounding takes what the other one does, and no more
+                # where large terms of this unknown cancel in a row, rounding absorbs the effect of the other one
                 seen &= np.abs(both(ASIDE * t)[0] / ASIDE - mixed) <= 0.05 * mixed
             if seen.any():
                 return float(t * (direct[seen] / mixed[seen]).min())

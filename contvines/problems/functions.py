@@ -1,4 +1,4 @@
-"""A user's function, called so that it can harm nothing, and its failures as sentences."""
+"""Safe calls of a user's functions: read-only arguments, copied results, failures as messages; and the parameters they receive."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Sparse(Protocol):
 
 @runtime_checkable
 class Operator(Protocol):
-    """A matrix that is known by its products alone, as scipy's LinearOperator."""
+    """A matrix-free operator, such as scipy's LinearOperator: only its products with vectors are available."""
 
     @property
     def shape(self) -> tuple[int, ...]: ...
@@ -44,18 +44,18 @@ class Operator(Protocol):
 
 
 class NotEvaluable(ArithmeticError):
-    """A user's function could not be evaluated; the message is a sentence with the function's own words."""
+    """A user's function could not be evaluated; the message quotes the function's own error."""
 
 
 def readonly(u: np.ndarray) -> np.ndarray:
-    """The array as a user's function sees it: it cannot be changed."""
+    """Return a read-only view of an array, as an argument of a user's function."""
     view = u.view()
     view.setflags(write=False)
     return view
 
 
 class UserFunction:
-    """f(u, p) of a user: sees a read-only u, and what it returns is copied.
+    """A user's f(u, p), called with a read-only u; its result is copied.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class UserFunction:
         For messages.
     parameters : ParameterSet
     called : str
-        With what, for messages.
+        Description of the arguments of f, for messages.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class UserFunction:
         self.alone = not parameters.named
 
     def raw(self, u: np.ndarray, p: complex) -> ArrayLike | Sparse | Operator:
-        """What f returns, whatever it is.
+        """Return f's result unchanged.
 
         Raises
         ------
@@ -87,8 +87,8 @@ class UserFunction:
             If f raises anything but an interrupt.
         """
         try:
-            seen = readonly(u) if u.flags.writeable else u
-            return self.f(seen, p if self.alone else self.parameters.at(p))
+            argument = readonly(u) if u.flags.writeable else u
+            return self.f(argument, p if self.alone else self.parameters.at(p))
         except Exception as error:
             hint = ""
             if isinstance(error, ValueError) and "read-only" in str(error):
@@ -104,7 +104,7 @@ class UserFunction:
             raise NotEvaluable(f"{self.name} raises {type(error).__name__}: {error}{hint}") from error
 
     def __call__(self, u: np.ndarray, p: complex) -> np.ndarray:
-        """A flat array of its own: real for real arguments, complex for complex ones.
+        """Return f's result as a new flat array, real for real arguments, so that f may reuse its buffer.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class UserFunction:
         return self.flat(self.raw(u, p), u, p)
 
     def flat(self, value: object, u: np.ndarray, p: complex) -> np.ndarray:
-        """What f has returned at (u, p) as a flat array; see ``__call__``."""
+        """Convert f's result at (u, p) to a flat array; see ``__call__``."""
         if value is None:
             raise NotEvaluable(f"{self.name} returns None; numbers are needed")
         if type(value) is np.ndarray and value.dtype == FLOAT:
@@ -141,7 +141,7 @@ class UserFunction:
 
 
 def difference_text(one: np.ndarray, other: np.ndarray) -> str:
-    """A sentence on values that differ, by more than small noise, though a function was asked for the same; empty if they do not."""
+    """Return a message if two evaluations at the same arguments differ by more than small noise; else an empty string."""
     one, other = one.reshape(-1), other.reshape(-1)
     apart = np.abs(one - other)
     if not (apart > DERIVATIVES.felt * np.abs(one)).any():
@@ -154,12 +154,12 @@ def difference_text(one: np.ndarray, other: np.ndarray) -> str:
 
 
 def as_matrix(given: object, n: int) -> np.ndarray | csc_array | Operator:
-    """What a user's jacobian returned, as a float array, a sparse matrix (csc) or a LinearOperator of shape (n, n).
+    """Convert the result of a user's jacobian to a float array, a sparse matrix (csc) or a LinearOperator of shape (n, n).
 
     Raises
     ------
     NotEvaluable
-        If it is none, or has another shape.
+        If it is no matrix, or has another shape.
     """
     if type(given) is np.ndarray and given.dtype == FLOAT and given.shape == (n, n):
         return given.copy()
@@ -181,7 +181,7 @@ def as_matrix(given: object, n: int) -> np.ndarray | csc_array | Operator:
 
 
 class Parameters:
-    """What ``F(u, p)`` reads: ``p.damping`` or ``p["damping"]``; values cannot be changed.
+    """Named parameters, the second argument of ``F(u, p)``: ``p.damping`` or ``p["damping"]``. Read-only.
 
     Parameters
     ----------
@@ -214,24 +214,24 @@ class Parameters:
         return f"Parameters({', '.join(f'{name}={value!r}' for name, value in self.__dict__.items())})"
 
 
-UNNAMED = "p"  # what the parameter is called where nobody says
+UNNAMED = "p"  # default name of the parameter
 
 
 class ParameterSet:
-    """The parameters of a problem: their values, and which one varies.
+    """The parameters of a problem: their values, and the name of the varying one.
 
-    A plain number stays a plain number: then there is one parameter, and ``F(u, p)`` gets its value itself.
+    If a plain number is given, there is one parameter, and ``F(u, p)`` receives its value as a plain number.
 
     Parameters
     ----------
     given : number, or mapping of str to number
     varying : str
-        Name of the parameter that varies; "p" in a mapping that does not have it stands for the first one.
+        Name of the parameter that varies; "p", if the mapping has no such name, means its first parameter.
 
     Raises
     ------
     ValueError
-        If a name is no identifier, a value no finite number, the mapping is empty, or the name is not among them.
+        If a name is no identifier, a value no finite number, the mapping is empty, or `varying` is not in it.
     """
 
     def __init__(self, given: Mapping[str, float] | float, varying: str) -> None:
@@ -259,24 +259,24 @@ class ParameterSet:
 
     @property
     def start(self) -> float:
-        """Value of the parameter that varies, where the problem starts."""
+        """Value of the varying parameter at the start."""
         return self.values[self.varying]
 
     def assign(self, name: str, value: float) -> None:
-        """Give a parameter another value, in place."""
+        """Set a parameter's value, in place."""
         self.values[name] = float(value)
 
     def at(self, p: complex) -> Parameters | complex:
-        """What the user's functions get as their second argument when the varying parameter is `p`."""
+        """Return the second argument of the user's functions for the value `p` of the varying parameter."""
         return Parameters({**self.values, self.varying: p}) if self.named else p
 
     def against(self, varying: str, values: Mapping[str, float] | None = None) -> ParameterSet:
-        """The same parameters with another one varying, and with some other values.
+        """Return the same parameters with another one varying, and with some new values.
 
         Raises
         ------
         ValueError
-            If a name is not among them.
+            If there is no parameter of a given name.
         """
         changed = dict(values or {})
         for name in (varying, *changed):
@@ -289,12 +289,12 @@ class ParameterSet:
         return ParameterSet(merged if self.named else merged[varying], varying)
 
     def given(self) -> dict[str, float] | float:
-        """As they were given: a mapping, or a number."""
+        """Return the values in the form in which they were given: a mapping, or a number."""
         return dict(self.values) if self.named else self.start
 
 
 class Parametrised:
-    """A problem with such parameters, ``values``."""
+    """Mixin of problems whose parameters are a `ParameterSet`, ``values``."""
 
     values: ParameterSet
 
@@ -305,7 +305,7 @@ class Parametrised:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """All parameters by name; of the one that varies the value at the start."""
+        """All parameters by name; the varying one with its value at the start."""
         return dict(self.values.values)
 
     @property
@@ -315,7 +315,7 @@ class Parametrised:
 
 
 class Outputs:
-    """Functions (u, p) -> number by name.
+    """A user's additional measures: functions (u, p) -> number by name.
 
     Parameters
     ----------
@@ -339,11 +339,11 @@ class Outputs:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Their names."""
+        """Names of the outputs."""
         return tuple(self.given)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Their values for solutions u of shape (m, N) at parameter values p of shape (m,); NaN where they fail."""
+        """Return their values for solutions u of shape (m, N) at parameter values p of shape (m,); NaN where a function fails."""
         return {
             name: np.array([self._one(name, *pair) for pair in zip(u, np.atleast_1d(p))]) for name in names
         }

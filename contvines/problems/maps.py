@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class MapSection:
-    """A map applied once per period of a cycle; see :mod:`contvines.circles.section`.
+    """Section of a map: one step is one period of the problem's cycle; see :mod:`contvines.circles.section`.
 
     Parameters
     ----------
@@ -42,19 +42,19 @@ class MapSection:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """x0, x1, ..."""
+        """Names of the coordinates: x0, x1, ..."""
         return tuple(f"x{j}" for j in range(self.problem.node))
 
     def through(self, u: np.ndarray) -> np.ndarray:
-        """The first point of the cycle."""
+        """Return the first point of the cycle."""
         return np.array(u[: self.problem.node], dtype=float)
 
     def rounds(self, u: np.ndarray) -> np.ndarray:
-        """All points of the cycle, shape (periods, d)."""
+        """Return all points of the cycle, shape (periods, d)."""
         return np.array(u, dtype=float).reshape(self.problem.cycle, self.problem.node)
 
     def image(self, x: np.ndarray) -> np.ndarray:
-        """f at a point, in the piece in which it lies; NaN where f is not defined."""
+        """Return f at a point, with the signs of the switches there; NaN where f is not defined."""
         try:
             with np.errstate(all="ignore"):
                 return self.value(x, self.p)
@@ -62,7 +62,7 @@ class MapSection:
             return np.full(self.problem.node, np.nan)
 
     def step(self, x: np.ndarray) -> np.ndarray:
-        """One period of the cycle later."""
+        """Return the point one period of the cycle later."""
         for _ in range(self.problem.cycle):
             x = self.image(x)
         return x
@@ -83,21 +83,21 @@ class MapProblem(CallableProblem):
         Length n of the cycle.
     parameter : str
     jacobian, derivative : callable, optional
-        (x, p) -> df/dx of shape (d, d), df/dp of shape (d,) (of several parameters a mapping by name). Else the complex
-        step, where f allows it, or differences with an error estimate. They are compared with differences of f.
+        (x, p) -> df/dx of shape (d, d), df/dp of shape (d,) (a mapping by name for several parameters). By default the complex
+        step if f allows it, else differences with an error estimate. Given derivatives are compared with differences of f.
     mirror : callable, matrix or permutation, optional
-        x -> R x with R R x = x and f(R x, p) = R f(x, p). Bifurcations to less symmetric cycles are symmetry breakings, of two mirror
-        images one is traced.
+        x -> R x with R R x = x and f(R x, p) = R f(x, p). Bifurcations to less symmetric cycles are then symmetry breakings, and only one
+        of two mirror images is traced.
     name : str
     dimension : int, optional
-        d, where u0 leaves it open (a flat u0 of n d numbers is otherwise read with d = len(u0) / n).
+        d, if u0 does not determine it (by default a flat u0 of n d numbers has d = len(u0) / n).
     scale : float or array_like of shape (d,), optional
-        What counts as large in each coordinate; learned from the start and the branch if it is left out.
+        Typical size of each coordinate; learned from the start and the branch if it is left out.
     switches : mapping of str to callable, optional
         (x, p) -> number whose sign selects a piece of f. f is then called as f(x, p, sign) with a mapping from the names to +1
         or -1, must be smooth for fixed signs, and must not look at the switches itself.
     outputs : mapping of str to callable, optional
-        (x, p) -> number at the first point of the cycle: measures of your own.
+        (x, p) -> number at the first point of the cycle: additional measures.
 
     Raises
     ------
@@ -165,10 +165,10 @@ class MapProblem(CallableProblem):
         self.symmetric_for = set()
         self._check_start(flat[:d])
         self._find_symmetries()
-        self.describe()  # its callables are known by their addresses from now on
+        self.describe()  # registers the callables by their addresses
 
     def _iterated(self, first: np.ndarray) -> np.ndarray:
-        """The points of a cycle from its first one; each in the piece in which it lies."""
+        """Iterate the first point of a cycle to get all; the signs of the switches are taken at each point."""
         nodes = [first]
         for _ in range(self.cycle - 1):
             self.pieces = Pieces(self.pieces.given, self.values, nodes[-1][None, :])
@@ -178,7 +178,7 @@ class MapProblem(CallableProblem):
 
     # ------------------------------------------------------------------ relatives
     def _find_symmetries(self) -> None:
-        """Images of a cycle that solve the same equations: half a cycle on, mirrored, and both at once."""
+        """Set the symmetries: the shift by half a cycle, the mirror, and both together."""
         even = self.cycle % 2 == 0
         found = [Symmetry("period-doubling", self._shift_by_half, self._root)] if even else []
         if self.mirror is not None:
@@ -196,7 +196,7 @@ class MapProblem(CallableProblem):
         return np.tile(each, self.cycle)
 
     def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
-        """The same map's cycles of another length, or in other pieces; scales are kept."""
+        """Return the problem of the same map's cycles of another length, or with other signs; scales are kept."""
         other = copy(self)
         other.values = self.values.against(self.parameter, {self.parameter: p})
         other.u0 = np.array(u, dtype=float)
@@ -212,7 +212,7 @@ class MapProblem(CallableProblem):
         return other._own()
 
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
-        """f(x_i) - x_{i+1} alone."""
+        """Return f(x_i) - x_{i+1} without derivatives."""
         nodes = u.reshape(self.cycle, self.node)
         images = np.empty_like(nodes)
         for i, node in enumerate(nodes):
@@ -221,7 +221,7 @@ class MapProblem(CallableProblem):
         return (images - np.roll(nodes, -1, axis=0)).reshape(-1)
 
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Residual f(x_i) - x_{i+1}, its Jacobian and parameter derivative."""
+        """Return the residual f(x_i) - x_{i+1}, its Jacobian and its parameter derivative."""
         n, d = self.cycle, self.node
         nodes = u.reshape(n, d)
         following = np.roll(nodes, -1, axis=0)
@@ -237,12 +237,12 @@ class MapProblem(CallableProblem):
         return residual.reshape(-1), jacobian.reshape(n * d, n * d), derivative.reshape(-1)
 
     def turn_closure(self, jacobian: np.ndarray, sign: float) -> None:
-        """x_n = x_0 in the Jacobian becomes x_n = -x_0 (sign = -1) or x_n = x_0 again (sign = 1)."""
+        """Change the closure x_n = x_0 in the Jacobian to x_n = -x_0 (sign = -1), or back (sign = 1), in place."""
         n, d = self.cycle, self.node
         jacobian.reshape(n, d, n, d)[n - 1, :, 0, :] -= 2.0 * sign * np.eye(d)
 
     def raw_spectrum(self, work: Linearised) -> np.ndarray:
-        """Multipliers: eigenvalues of the product of the Jacobians along the cycle."""
+        """Return the multipliers: eigenvalues of the product of the Jacobians along the cycle."""
         n, d = self.cycle, self.node
         jacobian = work.jacobian
         assert isinstance(jacobian, np.ndarray)
@@ -256,12 +256,12 @@ class MapProblem(CallableProblem):
         return without_roundoff(np.linalg.eigvals(product))
 
     def with_pieces(self, pieces: Pieces) -> MapProblem:
-        """The same cycles in other pieces; with those of several rounds, the cycles of so many times the length."""
+        """Return the same cycles with other signs of the switches; signs of several rounds give cycles of several times the length."""
         rounds = len(pieces.signs) // self.cycle
         return self._with_cycle(np.tile(self.u0, rounds), self.p0, pieces)
 
     def cycle_through(self, points: np.ndarray, p: float) -> MapProblem:
-        """The problem of the cycles with as many points as given, shape (n, d), with its start there."""
+        """Return the problem of cycles through n given points, shape (n, d), which are its start."""
         return self._with_cycle(
             np.asarray(points, dtype=float).reshape(-1), p, self.pieces.repeated(len(points), 1)
         )
@@ -278,7 +278,7 @@ class MapProblem(CallableProblem):
         return self._with_cycle(half, self.p0, self.pieces.repeated(1, self.cycle // 2)), half
 
     def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The points of the shortest cycle of which u is a repetition, and the differences at which points are one."""
+        """The points of the shortest cycle of which u is a repetition, and the largest differences between equal points."""
         nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
         signs = self.pieces.signs.reshape(n, -1)
         own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
@@ -290,12 +290,12 @@ class MapProblem(CallableProblem):
             and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
             and np.array_equal(
                 signs, np.roll(signs, r, axis=0)
-            )  # at a switch points meet that part beyond it
+            )  # at a switch, points of different pieces may coincide
         )
         return nodes[:root], scale
 
     def root(self, u: np.ndarray, p: float) -> tuple[MapProblem, np.ndarray] | None:
-        """The problem of the shortest cycle of which u is a repetition, and its points; None if u is no repetition."""
+        """Return the problem of the shortest cycle of which u is a repetition, and its points; None if u is no repetition."""
         nodes, _ = self._shortest(u)
         if len(nodes) == self.cycle:
             return None
@@ -305,7 +305,7 @@ class MapProblem(CallableProblem):
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
-        """At a period doubling: the cycle of twice the length."""
+        """Return, at a period doubling, the cycle as one of twice the length."""
         if kind != "period-doubling":
             return []
         doubled = np.tile(u, 2)
@@ -313,7 +313,7 @@ class MapProblem(CallableProblem):
         return [Embedding(self._with_cycle(doubled, p, self.pieces.repeated(2)), doubled, direction, kind)]
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
-        """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
+        """Return a key, and the first in dictionary order of the rotations and mirror images of the shortest cycle of which u is a repetition."""
         nodes, scale = self._shortest(u)
         root, n = len(nodes), self.cycle
         signs = self.pieces.signs.reshape(n, -1)
@@ -327,12 +327,12 @@ class MapProblem(CallableProblem):
     # ------------------------------------------------------------------ measures and motions
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Mean, smallest and largest of each coordinate over the cycle, and the coordinates of its first point."""
+        """Names: the user's outputs, "norm", coordinates of the first point, and mean, smallest and largest coordinates over the cycle."""
         names = [f"{what}{j}" for what in ("x", "mean", "min", "max") for j in range(self.node)]
         return (*self.outputs.names, "norm", *names)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures for an array of solutions."""
+        """Return the named measures, each of shape (m,), of m solutions."""
         nodes = np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)
         own = [name for name in names if name in self.outputs.names]
         result = self.outputs.measures(own, nodes[:, 0], p)
@@ -352,13 +352,13 @@ class MapProblem(CallableProblem):
         return result
 
     def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
-        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
+        """Return a coordinate ``x0``, ``x1`` ... at every point of m cycles, shape (m, n); None for other measures."""
         if name not in {f"x{j}" for j in range(self.node)}:
             return None
         return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
 
     def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
-        """Eigenvectors of the product of the Jacobians along the cycle, as columns, in the order of its eigenvalues."""
+        """Return eigenvectors of the product of the Jacobians along the cycle, as columns, in the order of the given eigenvalues."""
         product = np.eye(self.node)
         for i, x in enumerate(np.asarray(u, dtype=float).reshape(self.cycle, self.node)):
             self.pieces.current = i
@@ -366,11 +366,11 @@ class MapProblem(CallableProblem):
         return vectors_of(product, values)
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
-        """The points of the cycle, shape (n, d)."""
+        """Return the points of the cycle, shape (n, d)."""
         return np.array(u).reshape(self.cycle, self.node)
 
     def replay(self, u: np.ndarray, p: float) -> float:
-        """Largest distance after iterating each point of the cycle once."""
+        """Return the largest distance between f(x_i) and x_{i+1}."""
         nodes = np.asarray(u, dtype=float).reshape(self.cycle, self.node)
         worst = 0.0
         for i, x in enumerate(nodes):
@@ -380,7 +380,7 @@ class MapProblem(CallableProblem):
         return worst
 
     def simulated_attractors(self, p: float, starts: int = 24) -> list[dict[str, Any]]:
-        """What starts round the cycle settle on at a parameter value: "word", "periods" and "kind" of each motion."""
+        """Iterate starts around the cycle, and list the attractors they settle on, with "word", "periods" and "kind"."""
         population = self.population()
         motions, _, _ = population.settle(population.starts(starts, 7, p), p)
         found = {(m.word, m.periods, "cycle" if m.word else m.kind) for m in motions}
@@ -389,25 +389,25 @@ class MapProblem(CallableProblem):
         ]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable cycle as `simulated_attractors` lists it."""
+        """Return a stable cycle as an entry of `simulated_attractors`."""
         return {"word": f"{self.cycle}-cycle", "periods": self.cycle, "kind": "cycle"}
 
     def section(self, p: float) -> MapSection:
-        """Its motions, once per period of the cycle."""
+        """Return the section at a parameter value: one step is one period of the cycle."""
         return MapSection(self, p)
 
     @hinting
     def population(
         self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None
     ) -> Population:
-        """Starts in a box of states, for `atlas` and `basins`.
+        """Return a population of starts in a box of states, for `atlas` and `basins`.
 
         Parameters
         ----------
         over : str, optional
             The parameter that varies; by default the problem's own.
         box : sequence of (float, float), optional
-            Smallest and largest value of each unknown; by default round this cycle.
+            Smallest and largest value of each unknown; by default a box around this cycle.
 
         Raises
         ------
@@ -420,7 +420,7 @@ class MapProblem(CallableProblem):
         return MapPopulation(problem, box)
 
     def describe(self) -> dict[str, Any]:
-        """Name, cycle, start, and how to build the problem again if f can be imported."""
+        """Return name, cycle, start, and the data from which `from_description` rebuilds the problem if f can be imported."""
         where, importable = addresses(self.given)
         plain = not (self.pieces.count or self.outputs.names)
         return {
@@ -439,7 +439,7 @@ class MapProblem(CallableProblem):
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> MapProblem | None:
-    """A MapProblem from what ``describe()`` returned; None where its callables are not at hand."""
+    """Rebuild a MapProblem from the result of ``describe()``; None if its callables cannot be found."""
     functions = find_callables(description["callables"], trust)
     if functions is None:
         return None

@@ -1,12 +1,12 @@
-"""Pieces: equations whose form is selected by the signs of switches.
+"""Pieces: piecewise smooth equations whose form is selected by the signs of switches.
 
-A solution lives in one piece: for every node (a map's cycle has several) one sign for every switch. Inside, each switch times its
-sign is positive: these are the margins of the problem, and where one of them vanishes the branch meets a border. On the other
-side the equations have the sign turned round. With both tangents at hand the crossing is typed:
+A piece is a set of signs: for every node (a map's cycle has several) one sign for every switch. Inside the piece each switch times its
+sign is positive: these products are the margins of the problem, and the branch meets a border where one of them vanishes. On the other
+side this sign is reversed. The tangents of both sides determine the type of the border:
 
-persistence        the branch goes on, in the piece next door;
+persistence        the branch continues in the adjacent piece;
 nonsmooth fold     both pieces have their solutions on the same side of the parameter;
-nonsmooth flip     (maps) a cycle of twice the length, with the sign turned in one of its halves, is born at the border.
+nonsmooth flip     (maps) a cycle of twice the length, with the sign reversed in one of its halves, is born at the border.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ class Pieced(Problem, Protocol):
 
 
 class UnknownSwitch(KeyError):
-    """A switch of another name was asked for."""
+    """There is no switch of the requested name."""
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
 class Signs(dict[str, int]):
-    """+1 or -1 by the name of a switch."""
+    """Third argument of the user's function: +1 or -1 by the name of a switch."""
 
     def __missing__(self, name: str) -> int:
         hint = did_you_mean(str(name), self)
@@ -51,7 +51,7 @@ class Signs(dict[str, int]):
 
 
 def _takes_signs(call: Callable) -> bool:
-    """Whether a function can be called with three arguments; one that does not tell is believed."""
+    """Whether a function can be called with three arguments; True if its signature is unknown."""
     try:
         signature(call).bind(None, None, None)
     except TypeError:
@@ -70,7 +70,7 @@ class Pieces:
         (u, p) -> number.
     parameters : ParameterSet
     nodes : ndarray, shape (m, d)
-        Where the signs are taken from.
+        States at which the initial signs are taken.
 
     Raises
     ------
@@ -102,7 +102,7 @@ class Pieces:
         return np.array([float(switch(u, p)[0]) for switch in self.switches])
 
     def choose(self, u: np.ndarray, p: float) -> None:
-        """Take the piece of one node in which a state lies."""
+        """Set the signs to those at one state (for a single node)."""
         self.signs = np.where(self._at(u, p) >= 0.0, 1, -1).reshape(1, -1)
         self.current = 0
 
@@ -122,12 +122,12 @@ class Pieces:
         return "|".join("".join("+" if sign > 0 else "-" for sign in node) for node in self.signs)
 
     def wrap(self, f: Callable, name: str = "F") -> Callable:
-        """A function (u, p, sign) as one of (u, p), in the piece of the current node.
+        """Wrap a function (u, p, sign) as one of (u, p), with the signs of the current node.
 
         Raises
         ------
         ValueError
-            If it does not take the signs; `name` is what it is called then.
+            If the function cannot be called with the signs; `name` is for the message.
         """
         if not self.switches:
             return f
@@ -142,7 +142,7 @@ class Pieces:
         return Signs(zip(self.given, (int(sign) for sign in self.signs[self.current])))
 
     def margins(self, nodes: np.ndarray, p: float) -> np.ndarray:
-        """Switches times their signs, flat."""
+        """Return the switches times their signs, flat; NaN if a switch cannot be evaluated."""
         try:
             values = np.array([self._at(node, p) for node in nodes])
         except NotEvaluable:
@@ -150,7 +150,7 @@ class Pieces:
         return (values * self.signs).reshape(-1)
 
     def turned(self, j: int, copies: int = 1) -> Pieces:
-        """With the sign of margin j turned round, and behind it `copies` - 1 more cycles with the signs as they are."""
+        """Return the pieces with the sign of margin j reversed, followed by `copies` - 1 more cycles with unchanged signs."""
         other = copy(self)
         signs = [self.signs.copy() for _ in range(copies)]
         signs[0].reshape(-1)[j] *= -1
@@ -158,26 +158,26 @@ class Pieces:
         return other
 
     def against(self, parameters: ParameterSet) -> Pieces:
-        """The same pieces with switches that read other parameters."""
+        """Return the same signs, with switches that read other parameters."""
         other = copy(self)
         other.parameters = parameters
         other.switches = [UserFunction(s.f, s.name, parameters) for s in self.switches]
         return other
 
     def repeated(self, times: int, of: int | None = None) -> Pieces:
-        """The signs of so many cycles in a row; ``of``: of the first nodes only."""
+        """Return the signs repeated for several cycles in a row; ``of``: only those of the first nodes."""
         other = copy(self)
         other.signs = np.tile(self.signs[:of], (times, 1))
         return other
 
     def beyond(self, problem: Pieced, point: BorderPoint) -> list[Seed]:
-        """What leaves a border: the solution of the piece next door, and of maps the cycle of twice the length.
+        """Return the branches that leave a border: in the adjacent piece, and for maps the cycle of twice the length.
 
         Parameters
         ----------
         problem : AlgebraicProblem or MapProblem
         point : SpecialPoint
-            Its tangent points out of the piece.
+            Its tangent points out of the current piece.
         """
         j, seeds = margin_of(point), []
         candidates: list[tuple[Pieced, np.ndarray, bool]] = [
@@ -199,7 +199,7 @@ class Pieces:
 
 
 def _inward(problem: Pieced, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
-    """The tangent at a border point along which margin j grows, and all that vanish with it; None if there is none."""
+    """The tangent at a border point along which margin j grows, and all margins that vanish with it; None if there is none."""
     n = problem.dimension
     work, step, tangent = problem.workspace(), np.zeros(n + 1), np.zeros(n + 1)
     u = np.ascontiguousarray(u, dtype=float)
@@ -219,5 +219,5 @@ def _inward(problem: Pieced, u: np.ndarray, p: float, j: int) -> np.ndarray | No
     side = np.sign(growth[j])
     vanishing = np.abs(ahead + back) <= IDENTITY.vanishes * np.abs(
         growth
-    )  # of a doubled cycle one in either half
+    )  # in a doubled cycle one margin of each half vanishes
     return side * tangent if (side * growth[vanishing] > 0.0).all() else None

@@ -1,4 +1,4 @@
-"""Starts in a box, of maps and flows."""
+"""StartsInBox: base class of populations of maps and flows, with starts in a fixed box."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ import numpy as np
 
 
 class StartsInBox:
-    """Starts in a box; see the contract in `contvines.problems.abilities.Population`.
+    """Base class of populations with starts in a fixed box; the contract is that of `contvines.problems.abilities.Population`.
 
     Parameters
     ----------
     name : str
-        Of the map or flow.
+        Name of the map or flow.
     parameter : str
     box : sequence of (low, high), optional
-        One pair per state; by default round the points, widened by their extent on every side.
+        One pair per state; by default the bounding box of the points, widened by its extent on every side.
     points : ndarray, shape (n, d)
-        States that are known.
+        Known states.
     lengths : float or ndarray, shape (d,)
-        By so much the box is widened at least.
+        The default box is widened by at least this.
 
     Raises
     ------
     ValueError
-        If the box has not one pair low < high per state.
+        If the box does not have one pair low < high per state.
     """
 
     price = 1.0
@@ -41,7 +41,7 @@ class StartsInBox:
     ) -> None:
         self.name, self.parameter, self.node = name, parameter, points.shape[1]
         self.work = 0.0
-        """Steps of a map, or periods of a flow, so far, those that solve for cycles included."""
+        """Steps of a map, or periods of a flow, simulated so far, including those of Newton's method for cycles."""
         if box is None:
             reach = np.maximum(np.ptp(points, axis=0), np.maximum(lengths, np.abs(points).max(axis=0)))
             self._box = np.column_stack([points.min(axis=0) - reach, points.max(axis=0) + reach])
@@ -61,7 +61,7 @@ class StartsInBox:
 
     @property
     def about(self) -> dict[str, Any]:
-        """The name of the map or flow."""
+        """Name of the map or flow."""
         return {"name": self.name}
 
     def box(self, p: float) -> np.ndarray:
@@ -69,9 +69,9 @@ class StartsInBox:
         return self._box
 
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
-        """Motions known in closed form: none."""
+        """Return the motions known in closed form: none."""
         return []
 
     def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
-        """Measures of a motion that recurs nowhere: none."""
+        """Return measures of a simulated motion: none."""
         return {}

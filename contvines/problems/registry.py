@@ -1,8 +1,8 @@
-"""Which functions may rebuild a problem from its description in a file: a fixed list, and what the program adds.
+"""Factories that rebuild a problem from its description in a file: a fixed list, and those a program registers.
 
-Files are data. A description names a factory; the name is looked up here, nothing is imported or called because a file
-says so. Functions of the user's own that a file names (those of an :class:`~contvines.AlgebraicProblem`, say) are found
-if this program has made a problem from them already; else they are imported only where the user says ``trust``.
+Files are data: a description names a factory, and the name is looked up in this list; a file cannot cause an import or a call of other
+code. A user's functions that a file names (those of an :class:`~contvines.AlgebraicProblem`) are found if this program has already made a
+problem from them; otherwise they are imported only with ``trust``.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from .protocol import Problem
 
 
-#: Factories of this package's own problems: name in a file -> "module:function" of (description, trust). Names of earlier versions stay,
-#: for their files.
+#: Factories of this package's problems: name in a file -> "module:function" of (description, trust). Names of earlier versions are kept
+#: so that their files can be read.
 FACTORIES = {
     "contvines.flows.files:from_description": "contvines.flows.files:from_description",
     "contvines.loci.adaptive:from_description": "contvines.loci.adaptive:from_description",
@@ -26,7 +26,7 @@ FACTORIES = {
     "contvines.algebraic:from_description": "contvines.problems.algebraic:from_description",
     "contvines.map_problem:from_description": "contvines.problems.maps:from_description",
 }
-#: Module of another package that lists its own, as ``FACTORIES``.
+#: Package with further ``FACTORIES``.
 PROVIDER = "orbits"
 
 _added: dict[str, Callable[..., Any]] = {}
@@ -34,29 +34,29 @@ _callables: dict[str, Callable] = {}
 
 
 class UnknownFactory(ValueError):
-    """A description whose factory is not on the list."""
+    """A description names a factory that is not on the list."""
 
 
 def register(name: str, build: Callable[..., Any]) -> None:
-    """Let files name a factory of this program, for problems whose ``describe()["factory"]`` is this name.
+    """Add a factory for problems whose ``describe()["factory"]`` is `name`.
 
     Parameters
     ----------
     name : str
     build : callable
-        (description, trust) -> problem; ``description`` is what ``describe()`` returned, ``trust`` whether functions that
+        (description, trust) -> problem; ``description`` is the result of ``describe()``, ``trust`` whether functions that
         it names may be imported.
     """
     _added[str(name)] = build
 
 
 def factory(name: object) -> Callable[..., Any]:
-    """The function behind a factory's name.
+    """Return the factory of a given name.
 
     Raises
     ------
     UnknownFactory
-        If there is none; the sentence says how to add one.
+        If there is none.
     """
     if isinstance(name, str):
         if name in _added:
@@ -77,19 +77,19 @@ def _provided() -> Mapping[str, str]:
         return import_module(PROVIDER).FACTORIES
     except ModuleNotFoundError as error:
         if error.name and PROVIDER.startswith(error.name):
-            return {}  # that half is not installed
+            return {}  # the package is not installed
         raise
 
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> Problem | None:
-    """The problem that ``describe()`` described, or None where that takes functions of the user's that are not at hand.
+    """Rebuild the problem of a description; None if it needs functions of the user that cannot be found.
 
     Parameters
     ----------
     description : mapping
         With "factory": a name known to :func:`factory`, or None.
     trust : bool
-        Import functions that the description names. Only for files whose maker is trusted: importing runs their code.
+        Import functions that the description names. Only for files from a trusted source: importing runs their code.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> Problem | No
 
 
 def address(f: Callable) -> str | None:
-    """ "module:name" under which a callable can be found again, or None; remembers the callable."""
+    """Return "module:name" under which a callable can be imported, or None; registers the callable under this address."""
     module, name = getattr(f, "__module__", None), getattr(f, "__qualname__", "")
     if not module or module == "__main__" or "<" in name or not name:
         return None
@@ -121,7 +121,7 @@ def address(f: Callable) -> str | None:
 
 
 def addresses(given: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
-    """Where callables can be found again, by role, and whether all of them can.
+    """Return the addresses of callables by role, and whether all callables have one.
 
     Parameters
     ----------
@@ -142,15 +142,16 @@ def addresses(given: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
 
 
 def find_callables(where: Mapping[str, object] | Sequence[object], trust: bool) -> dict[str, Any] | None:
-    """The callables whose addresses a description holds; None where one of them is not at hand.
+    """Return the callables at the addresses of a description; None if one of them cannot be found.
 
-    At hand is what this program has made a problem from; with ``trust``, what can be imported.
+    A callable is found if this program has made a problem from it or, with ``trust``, if it can be imported.
 
     Parameters
     ----------
     where : mapping of role to an address, to a mapping of addresses, to numbers (a mirror given as a matrix) or None
-        (Version 0.1 kept those of maps as a list.)
+        (In version 0.1 a list of addresses for maps.)
     trust : bool
+        Import callables that are not registered.
 
     Raises
     ------
@@ -172,9 +173,9 @@ def find_callables(where: Mapping[str, object] | Sequence[object], trust: bool) 
 
 
 def _find(where: str, trust: bool) -> Callable | None:
-    known = _callables.get(where)
-    if known is not None or not trust:
-        return known
+    registered = _callables.get(where)
+    if registered is not None or not trust:
+        return registered
     module, _, name = where.partition(":")
     try:
         found: object = import_module(module)
@@ -188,7 +189,7 @@ def _find(where: str, trust: bool) -> Callable | None:
 
 
 def without_problem(label: str, description: Mapping[str, Any] | None = None) -> str:
-    """The sentence for a branch or point that was loaded without its problem: why, and a way out."""
+    """Return the message for a branch or point that was loaded without its problem: the reason and a remedy."""
     try:
         named = bool(description and description.get("factory") and factory(description["factory"]))
     except UnknownFactory as error:

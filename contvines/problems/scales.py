@@ -1,4 +1,4 @@
-"""Scales: what counts as large in each unknown, in the parameter and in each equation."""
+"""Scales: typical sizes of the unknowns, of the parameter and of the equations."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-APART = 30.0  # of many unknowns those whose sizes differ by less belong to one field
-MANY = 20  # unknowns of fewer have each its own scale
+APART = 30.0  # of many unknowns, those whose sorted sizes have no gap by this factor belong to one field
+MANY = 20  # up to so many unknowns, each has its own scale
 
 
 @dataclass(frozen=True)
 class Scales:
-    """Typical sizes.
+    """Typical sizes of unknowns, parameter and equations.
 
     Attributes
     ----------
@@ -34,9 +34,9 @@ class Scales:
     rate : float
         Typical size of an eigenvalue of dF/du.
     noise : float
-        Accuracy to which unknowns can be obtained, relative to their scale; 0: to roundoff.
+        Error of the unknowns that noise of the equations causes, relative to their scale; 0: roundoff only.
     untold : tuple of int
-        Unknowns of which nothing tells how large they become; their scale is 1.
+        Indices of unknowns whose size could not be learned; their scale is 1.
     """
 
     unknowns: np.ndarray
@@ -52,29 +52,29 @@ class Scales:
         return np.append(self.unknowns, self.parameter)
 
     def head(self, n: int) -> Scales:
-        """Of the first n unknowns only."""
+        """Return the scales of the first n unknowns only."""
         return Scales(self.unknowns[:n], self.parameter, self.rows[:n], self.rate, self.noise)
 
     def tiled(self, times: int) -> Scales:
-        """For a problem that consists of that many copies of the unknowns."""
+        """Return the scales of a problem whose unknowns are `times` copies of these."""
         return Scales(
             np.tile(self.unknowns, times), self.parameter, np.tile(self.rows, times), self.rate, self.noise
         )
 
 
 def flat_start(u0: ArrayLike, name: str = "u0") -> np.ndarray:
-    """A user's start as a flat array of its own.
+    """Return a user's start as a new flat array.
 
     Parameters
     ----------
     u0 : array_like
     name : str
-        What it is called, for messages.
+        Name of the argument, for messages.
 
     Raises
     ------
     ValueError
-        If it is empty, no numbers, or has several axes.
+        If it is empty, contains no numbers, or has several axes.
     """
     try:
         start = np.array(u0, dtype=float)
@@ -90,7 +90,7 @@ def flat_start(u0: ArrayLike, name: str = "u0") -> np.ndarray:
 
 
 def given_scale(scale: ArrayLike | None, n: int) -> np.ndarray | None:
-    """A user's ``scale`` as an array of n positive numbers; None stays None.
+    """Return a user's ``scale`` as an array of n positive numbers; None stays None.
 
     Raises
     ------
@@ -111,9 +111,9 @@ def given_scale(scale: ArrayLike | None, n: int) -> np.ndarray | None:
 
 
 def in_fields(sizes: np.ndarray) -> np.ndarray:
-    """Sizes of many unknowns, those of one field made equal: a field is what no gap in the sorted sizes parts.
+    """Give the unknowns of one field the same size, if there are many; gaps in the sorted sizes separate the fields.
 
-    The value of a field next to a wall is small, but what counts as large there is what counts as large elsewhere.
+    The values of a discretised field are small next to a boundary, but their scale is the same as elsewhere.
     """
     if len(sizes) <= MANY:
         return sizes
@@ -125,27 +125,27 @@ def in_fields(sizes: np.ndarray) -> np.ndarray:
     return result
 
 
-EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
-PAIRS = 12  # up to so many, couplings between two of them are looked at
-FEW = 2  # lengths tried on either side where the function is slow
-BESIDE = 2.0**-17  # part of the parameter by which it is changed to see its terms
-HUGE = 20  # times 1 / `ROUNDED` in a row: from the smallest number to the largest
-PATIENCE = 0.5  # seconds that measuring lengths may take
+EACH = 64  # up to so many unknowns, the length of each is measured; of more, one length for all
+PAIRS = 12  # up to so many unknowns, bilinear terms of pairs are measured
+FEW = 2  # lengths tried on either side of the guess if the function is slow
+BESIDE = 2.0**-17  # relative change of the parameter from which the size of its terms is computed
+HUGE = 20  # powers of 1 / `ROUNDED` that are tried: from the smallest floating-point number to the largest
+PATIENCE = 0.5  # seconds that measuring all lengths may take
 
 Values = Callable[[np.ndarray], np.ndarray]
 
 
 class Extents(NamedTuple):
-    """Sizes of the unknowns.
+    """Lengths of the unknowns, and their origin.
 
     Attributes
     ----------
     lengths : ndarray, shape (n,)
-        Over which f bends in each unknown; where it does not, the unknown's size, or 1.
+        Change of each unknown over which f is nonlinear; where f is linear, the unknown's size, or 1 if that is zero.
     bends : ndarray of bool, shape (n,)
-        Where it does.
+        Whether f is nonlinear in each unknown.
     known : ndarray of bool, shape (n,)
-        Where the length comes from f or from the unknown itself, and is not just 1.
+        Whether the length comes from f or from the unknown itself; else it is just 1.
     """
 
     lengths: np.ndarray
@@ -156,17 +156,17 @@ class Extents(NamedTuple):
 def measured(
     f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float, terms: float | np.ndarray = 0.0
 ) -> Extents:
-    """Sizes of the unknowns at u.
+    """Measure the lengths of the unknowns at u.
 
     Parameters
     ----------
     f : callable
-        (u of shape (n,)) -> n numbers, not finite where they cannot be obtained.
+        (u of shape (n,)) -> n numbers, not finite where f cannot be evaluated.
     u : ndarray, shape (n,)
     grain : float or ndarray
         Standard deviation of f.
     cost : float
-        Seconds of a call.
+        Seconds that a call takes.
     terms : float or ndarray
         See :func:`of_rounding`.
     """
@@ -194,7 +194,7 @@ def measured(
 
 
 def of_parameter(f: Callable[[float], np.ndarray], p: float) -> np.ndarray:
-    """Size of the terms with the parameter in each equation, p times the derivative; 0 where it cannot be obtained.
+    """Size of the terms with the parameter in each equation: |p dF/dp|; 0 where it cannot be computed.
 
     Parameters
     ----------
@@ -208,14 +208,14 @@ def of_parameter(f: Callable[[float], np.ndarray], p: float) -> np.ndarray:
 
 
 def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np.ndarray:
-    """Which unknowns are zeros that rounding has moved, shape (n,): f does not feel them beside the others, but would if they were larger.
+    """Which unknowns are zeros up to rounding, shape (n,): they are too small to have an effect on f, but larger values have one.
 
     Parameters
     ----------
     f : callable
     u : ndarray, shape (n,)
     terms : float or ndarray
-        Size of what else is in each equation, see :func:`of_parameter`.
+        Size of the other terms of each equation, see :func:`of_parameter`.
     """
     found = np.zeros(len(u), dtype=bool)
     if len(u) > EACH:
@@ -228,7 +228,7 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
             moved[j] *= factor
             return np.abs(f(moved) - here)
 
-        # zero may be another solution: twice the unknown is asked for as well
+        # zero may be another solution, so that f does not change: twice the unknown is tried, too
         changes = np.array([np.maximum(change(j, 0.0), change(j, 2.0)) for j in range(len(u))])
         floor = ROUNDED * np.maximum(changes.max(axis=0), terms)
         for j in np.flatnonzero((u != 0.0) & (changes <= floor).all(axis=1)):
@@ -237,7 +237,7 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
 
 
 def _couple(f: Values, u: np.ndarray, unit: np.ndarray, lengths: np.ndarray, known: np.ndarray) -> None:
-    """Lengths of unknowns that are zero and in which f is linear, but which decide how it changes with others."""
+    """Set the lengths of unknowns that are zero and in which f is linear, from bilinear terms with others; in place."""
     for j in np.flatnonzero(~known):
         sizes = []
         for k in range(len(u)):
@@ -255,14 +255,14 @@ def _couple(f: Values, u: np.ndarray, unit: np.ndarray, lengths: np.ndarray, kno
 def weighed(
     f: Values, matrix: np.ndarray, lengths: np.ndarray, known: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Lengths of unknowns of which nothing else is known: where they weigh as much in an equation as those that are known.
+    """Set unknown lengths so that the terms of these unknowns in an equation are as large as those of unknowns with known lengths.
 
-    By their linear terms first, then, those together that are linked by such terms, by what is even in them.
+    Linear terms are used first. For the rest, groups of unknowns that linear terms connect get a common factor from their even terms.
 
     Parameters
     ----------
     f : callable
-        (v of shape (n,)) -> values of the equations where the unknowns are changed by v; not finite where they cannot be obtained.
+        (v of shape (n,)) -> values of the equations if the unknowns are changed by v; not finite where they cannot be evaluated.
     matrix : ndarray, shape (n, n)
         Derivatives of the equations.
     lengths : ndarray, shape (n,)
@@ -275,38 +275,38 @@ def weighed(
     """
     lengths, known, matrix = lengths.copy(), known.copy(), np.abs(matrix)
     _spread(matrix, lengths, known)
-    asked = known.copy()
-    while known.any() and not asked.all():
-        part = asked.copy()
-        part[int(np.argmin(asked))] = True
-        _spread(np.where(asked, 0.0, matrix), lengths, part)
-        part &= ~asked
+    tried = known.copy()
+    while known.any() and not tried.all():
+        part = tried.copy()
+        part[int(np.argmin(tried))] = True
+        _spread(np.where(tried, 0.0, matrix), lengths, part)
+        part &= ~tried
         rows = (matrix * np.where(known, lengths, 0.0)).max(axis=1)
         factor = _even(f, np.where(part, lengths, 0.0), rows)
-        asked |= part
+        tried |= part
         if factor is not None:
             lengths[part] *= factor
             known |= part
             _spread(matrix, lengths, known)
-            asked |= known
+            tried |= known
     return lengths, known
 
 
 def _spread(matrix: np.ndarray, lengths: np.ndarray, known: np.ndarray) -> None:
-    """Lengths by linear terms, row by row outwards from what is known; of several rows the largest."""
+    """Set lengths by linear terms, in place, step by step from the known ones; of several rows the largest length counts."""
     while not known.all():
         rows = (matrix * np.where(known, lengths, 0.0)).max(axis=1)
         with np.errstate(all="ignore"):
-            says = np.where((rows[:, None] > 0.0) & (matrix > 0.0), rows[:, None] / matrix, 0.0).max(axis=0)
-        found = ~known & (says > 0.0) & np.isfinite(says)
+            sizes = np.where((rows[:, None] > 0.0) & (matrix > 0.0), rows[:, None] / matrix, 0.0).max(axis=0)
+        found = ~known & (sizes > 0.0) & np.isfinite(sizes)
         if not found.any():
             return
-        lengths[found] = says[found]
+        lengths[found] = sizes[found]
         known |= found
 
 
 def _even(f: Values, direction: np.ndarray, rows: np.ndarray) -> float | None:
-    """Factor of a direction at which what is even of some row along it reaches `rows`; None if there is none."""
+    """Factor of a direction at which the even part of some row reaches `rows`; None if there is none."""
     direction = direction * np.random.default_rng(5).uniform(0.5, 1.0, len(direction))
     with np.errstate(all="ignore"):
         here = f(np.zeros(len(direction)))

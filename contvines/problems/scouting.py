@@ -1,11 +1,11 @@
-"""Scouting: from a rough guess to a solution, and along its branch far enough to see how large the unknowns become.
+"""Scouting: damped Newton's method from a rough guess to a solution, and a coarse trace of its branch to learn the scales.
 
-Full steps of Newton's method may jump over a fold to another solution, or away; damped ones end at the solution to which the guess
-belongs, or nowhere. The step lengths are those of Deuflhard, Newton methods for nonlinear problems, Springer 2004, algorithm NLEQ-ERR (section
-3.3.3): they depend on no scaling of the equations.
+Full Newton steps may jump across a fold to another solution, or diverge; damped steps converge to the solution to which the guess
+belongs, or fail. The step lengths are those of Deuflhard, Newton methods for nonlinear problems, Springer 2004, algorithm NLEQ-ERR (section
+3.3.3): they do not depend on the scaling of the equations.
 
-Scales are learned by a short, coarse continuation both ways from the start of a problem that is made of Python callables; its metric grows with
-what it sees. Nothing of it is kept but the sizes.
+The scales of a problem made of Python callables are learned by a short, coarse continuation in both directions from its start. Its metric
+grows with the unknowns. Only the scales are kept.
 """
 
 from __future__ import annotations
@@ -31,23 +31,24 @@ if TYPE_CHECKING:
     from .large.sparse import SparseWork
 
 
-DAMPED = 80  # steps of damped Newton
-STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
+DAMPED = 80  # most steps of damped Newton's method
+STEPS = {30: 60, 500: 24}  # most unknowns: continuation steps each way; FEW for problems with more unknowns
 FEW = 6
-LONGEST = 0.5  # step, in the metric
-TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
-TURN = 0.6  # largest angle between tangents
-SLOW = 0.2  # part of its range by which the parameter moves while the unknowns double theirs, on branches that do not run away
-MOST = 64  # unknowns of which is asked whether rounding has moved them
-SAMPLES = 4  # points at which eigenvalues are looked at
+LONGEST = 0.5  # largest continuation step, in the metric
+# sum of the angles between tangents (rad) at which the trace ends: the branch has shown its scales
+TURNED = 3.0
+TURN = 0.6  # largest angle (rad) between successive tangents
+SLOW = 0.2  # a branch runs away if the parameter moves by less than this part of its range while the unknowns double theirs
+MOST = 64  # most unknowns that are tested for being zeros up to rounding
+SAMPLES = 4  # points at which the typical magnitude of the eigenvalues is computed
 
 
 class RoughProblem(Equations, Rough, Protocol):
-    """A problem whose equations can be evaluated without their derivatives, and bend over known lengths."""
+    """A problem with ``residuals`` and ``lengths``, which may begin at a rough guess."""
 
 
 class Unscaled(RoughProblem, Protocol):
-    """A problem whose scales are to be learned, a :class:`contvines.problems.callables.CallableProblem`."""
+    """A problem whose scales can be learned: the members of :class:`contvines.problems.callables.CallableProblem` that `Scout` uses."""
 
     functions: Differentiated
 
@@ -63,7 +64,7 @@ class Unscaled(RoughProblem, Protocol):
 
 
 def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | None:
-    """A point near the solution at this parameter value to which damped Newton's method leads; None where it leads nowhere.
+    """Return a point near the solution to which damped Newton's method converges at a fixed parameter; None if it fails.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
     Returns
     -------
     ndarray or None
-        Of shape (N,), so near that full steps converge; `u` itself where they do from there.
+        Of shape (N,), so near the solution that full steps converge; `u` itself if they converge from there.
     """
     work, kernels, n = problem.workspace(), problem.kernels, len(u)
     F = array_of(work)
@@ -115,7 +116,7 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
                     break
                 linearised(
                     u
-                )  # a singular Jacobian lies between: what is behind it belongs to another solution
+                )  # the sign of the determinant has changed: beyond the singular Jacobian lies another solution
             bend = size(simplified - (1.0 - damping) * step)
             shorter = 0.5 * length * damping**2 / bend if 0.0 < bend < math.inf else 0.0
             damping = min(max(shorter, 0.1 * damping), 0.5 * damping)
@@ -126,7 +127,7 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
 
 
 def _value(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray:
-    """F, or not a number where it cannot be evaluated."""
+    """F, or NaN where it cannot be evaluated."""
     with np.errstate(all="ignore"):
         try:
             return problem.residuals(u, p)
@@ -135,14 +136,15 @@ def _value(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray:
 
 
 class Scout:
-    """A coarse predictor-corrector whose scales grow with the unknowns.
+    """A coarse predictor-corrector method whose scales grow with the unknowns.
 
     Parameters
     ----------
     problem : Unscaled
     within : (float, float)
+        Parameter interval.
     given : ndarray, optional
-        Scales of the unknowns where the user has given them.
+        Scales of the unknowns, if the user has given them.
     """
 
     def __init__(
@@ -151,7 +153,7 @@ class Scout:
         self.problem, self.within, self.n = problem, within, int(problem.dimension)
         self.width = within[1] - within[0]
         self.kernels, self.work = problem.kernels, problem.workspace()
-        # a bend over less than this share of the unknown itself is rounding
+        # a length below this share of the unknown itself is an effect of rounding
         self.first = np.maximum(problem.lengths, SCALES.barely * np.abs(np.asarray(problem.u0, dtype=float)))
         start = np.abs(np.asarray(problem.u0, dtype=float))
         far = (start > 0.0) & (SCALES.rounding * self.first > start)
@@ -162,7 +164,7 @@ class Scout:
         self.first = np.where(far, start, self.first)
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)
-        self.before = np.zeros(self.n + 1)  # ranges when one of them had doubled last
+        self.before = np.zeros(self.n + 1)  # ranges of (u, p) when one of them last doubled
         self.rows = np.zeros(self.n)
         self.rates: list[float] = []
         self.noise = 0.0
@@ -173,6 +175,7 @@ class Scout:
 
     # ------------------------------------------------------------------ one point
     def weights(self) -> np.ndarray:
+        """Weights of the metric for (u, p)."""
         return np.append(1.0 / (self.n * self.scale**2), 1.0 / self.width**2)
 
     def _length(self, vector: np.ndarray) -> float:
@@ -181,7 +184,7 @@ class Scout:
     def _correct(
         self, z: np.ndarray, border: np.ndarray, sweeps: int
     ) -> tuple[np.ndarray, np.ndarray] | None:
-        """The solution with border.z as it is, and its tangent."""
+        """Newton's method with border.z held fixed: the solution and its tangent, or None."""
         z, target = z.copy(), float(border @ z)
         step, tangent = np.zeros(self.n + 1), np.zeros(self.n + 1)
         before = math.inf
@@ -201,19 +204,20 @@ class Scout:
             before = size
         return None
 
-    def _saw(self, z: np.ndarray, first: bool) -> None:
+    def _record(self, z: np.ndarray, first: bool) -> None:
+        """Update ranges, scales and sizes of the equations with a new point."""
         if first:
             self.low = self.high = z
         self.low, self.high = np.minimum(self.low, z), np.maximum(self.high, z)
         extent = 0.5 * (self.high - self.low)[:-1]
         self.scale = in_fields(np.maximum(self.first, extent))
-        self.rows = np.maximum(self.rows, self._felt(self.scale, self.width))
+        self.rows = np.maximum(self.rows, self._row_changes(self.scale, self.width))
         if len(self.rates) < SAMPLES:
             self.rates += self.problem.rates(self.work)
 
-    # ------------------------------------------------------------------ the way
+    # ------------------------------------------------------------------ the trace
     def start(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """A solution near the start, at the fixed parameter or with a fixed unknown, and its tangent."""
+        """Return a solution near the start, with the parameter or an unknown held fixed, and its tangent; None if there is none."""
         z = np.append(self.problem.u0, self.problem.p0)
         near = approach(self.problem, z[:-1], float(z[-1]))
         if near is not None:
@@ -224,14 +228,14 @@ class Scout:
             found = self._correct(z, border, 40)
             if found is not None and self.within[0] <= found[0][-1] <= self.within[1]:
                 self._take_from_tangent(*found)
-                self._saw(found[0], True)
+                self._record(found[0], True)
                 return found
         return None
 
     def _take_from_tangent(self, z: np.ndarray, tangent: np.ndarray) -> None:
-        """Sizes of unknowns of which nothing is known: how far they get while another one, or the parameter, covers its own.
+        """Set unknown sizes to the distance an unknown moves along the tangent while another one, or the parameter, moves by its own size.
 
-        Those that do not move are as large as makes them weigh in an equation what others do.
+        Unknowns that do not move get the size at which their terms in an equation are as large as those of the others.
         """
         known = self.known
         if self.given or known.all():
@@ -242,11 +246,11 @@ class Scout:
         if moving.any() and free.any():
             way = float((sizes[moving] / rates[moving]).min())
             self.first = np.where(free, np.maximum(rates[:-1] * way, TINY), self.first)
-        self.first, told = self._weighed(z, known | free)
-        self.known, self.scale = known | (told & ~free), self.first.copy()
+        self.first, weighable = self._weighed(z, known | free)
+        self.known, self.scale = known | (weighable & ~free), self.first.copy()
 
     def _weighed(self, z: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Lengths of unknowns of which nothing else is known, from the linearisation at z; and which are known then."""
+        """Lengths from the terms of the equations at z, see `weighed`; and which unknowns have known lengths then."""
         if not isinstance(self.work.jacobian, np.ndarray):
             return self.first, known
 
@@ -258,14 +262,14 @@ class Scout:
 
         return weighed(beside, self.work.jacobian, self.first, known)
 
-    def _felt(self, scale: np.ndarray, width: float) -> np.ndarray:
-        """Largest change of each equation when one unknown or the parameter changes by so much, as linearised last."""
+    def _row_changes(self, scale: np.ndarray, width: float) -> np.ndarray:
+        """Largest change of each equation when one unknown changes by its scale or the parameter by `width`, by the last linearisation."""
         return np.maximum(
             self.problem.algebra.row_sizes(self.work, scale), np.abs(self.work.derivative) * width
         )
 
     def listen(self, tangent: np.ndarray) -> None:
-        """How much the noise of the equations moves the solution at which they were linearised last across the branch, relative to the scale."""
+        """Set ``noise``: how far noise of the equations moves the last linearised solution across the branch, relative to its scale."""
         noise = self.problem.functions.noise
         if not noise.any():
             return
@@ -279,7 +283,7 @@ class Scout:
             self.noise = min(moved, DERIVATIVES.believed)
 
     def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
-        """Which entries of a tangent are no rounding: they are the same when it is solved for with another border."""
+        """Which entries of a tangent are not rounding errors: they do not change if another border is used."""
         step, again = np.zeros(self.n + 1), np.zeros(self.n + 1)
         border = np.random.default_rng(9).uniform(0.5, 1.0, self.n + 1) / np.append(self.first, self.width)
         self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, again)
@@ -309,13 +313,13 @@ class Scout:
             if not self.before.any():
                 self.before = self.high - self.low
             z, tangent, turned = found[0], ahead, turned + turn
-            self._saw(z, False)
+            self._record(z, False)
             if turned > TURNED or self._runs_away():
                 return
             h = min(1.7 * h, LONGEST)
 
     def _runs_away(self) -> bool:
-        """Whether the unknowns have doubled their range while the parameter, which had moved before, hardly did."""
+        """Whether the unknowns have doubled their range since the last call while the parameter hardly moved."""
         extent = self.high - self.low
         doubled = np.any((extent[:-1] > 2.0 * self.before[:-1]) & (self.before[:-1] > 0.0))
         if not doubled:
@@ -325,26 +329,26 @@ class Scout:
         return bool(moved < SLOW * in_all)
 
     def _rounding(self, size: np.ndarray) -> dict[int, float]:
-        """Unknowns so small that no equation feels them, which are zeros moved by rounding; and how large one must be to be felt."""
+        """Unknowns that are zeros up to rounding, since they are too small for an effect on any equation; each with the size at which it has one."""
         found: dict[int, float] = {}
         for j in np.flatnonzero((size > 0.0) & (size < SCALES.rounding * size.max()))[:MOST]:
             unit = np.zeros(self.n)
             unit[j] = 1.0
-            felt = self._felt(unit, 0.0)
-            reach = np.divide(self.rows, felt, out=np.full(self.n, np.inf), where=felt > 0.0).min()
+            change = self._row_changes(unit, 0.0)
+            reach = np.divide(self.rows, change, out=np.full(self.n, np.inf), where=change > 0.0).min()
             if np.isfinite(reach) and size[j] < SCALES.rounding * reach:
                 found[int(j)] = float(reach)
         return found
 
     def scales(self, given: np.ndarray | None) -> Scales:
-        """What was seen; ``given`` wins over it."""
+        """Return the learned scales; those of the unknowns are replaced by ``given``."""
         extent = 0.5 * (self.high - self.low)
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         lost = self._rounding(size)
         size[list(lost)] = 0.0
         bends, first = self.problem.of_unknowns(self.problem.functions.bends), self.first
         sure = bends | self.known
-        # a zero that rounding has moved has no size of its own
+        # a zero moved by rounding has no size of its own
         least = np.where(np.asarray(self.problem.u0) == 0.0, SCALES.faint, SCALES.rounding)
         own = np.where(size > np.where(sure, least * first, 0.0), size, first)
         moved = extent[:-1] > np.where(
@@ -357,7 +361,7 @@ class Scout:
         own = np.maximum(np.where(moved, seen, rest), SCALES.barely * size)
         far = (extent[:-1] > SCALES.moves * size) | (np.where(bends, extent[:-1], 0.0) > first)
         travelled = bool(np.any(far)) or bool(extent[-1] > SCALES.travelled * self.width)
-        if not travelled:  # nothing was learned: the unknowns' own sizes, and the whole interval
+        if not travelled:  # nothing was learned: use the unknowns' own sizes, and the whole interval
             own = np.where(size > 0.0, size, 1.0)
         unknowns = in_fields(own) if given is None else given
         seen_unit = min(self.width, 2.0 * extent[-1])
@@ -369,14 +373,14 @@ class Scout:
 
 
 def learn(problem: Unscaled, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:
-    """Scales of a problem within an interval.
+    """Learn the scales of a problem within a parameter interval.
 
     Parameters
     ----------
     problem : Unscaled
     within : (float, float)
     given : ndarray, optional
-        Scales of the unknowns where the user has given them.
+        Scales of the unknowns, if the user has given them.
     """
     scout = Scout(problem, within, given)
     begin = scout.start()

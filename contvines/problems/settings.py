@@ -1,4 +1,4 @@
-"""Tolerances of problems made of Python callables. Users set none of them; those of a diagram are :class:`contvines.Settings`."""
+"""Tolerances of problems made of Python callables. Users do not set them; user settings are in :class:`contvines.Settings`."""
 
 from __future__ import annotations
 
@@ -7,32 +7,33 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class DerivativeSettings:
-    """What decides about derivatives, noise and breaks of a user's functions.
+    """Tolerances for derivatives, noise, kinks and jumps of a user's functions.
 
     Attributes
     ----------
     roundoff : float
-        Differences: relative error, noise or width that is rounding of single numbers.
+        Differences: relative error, noise or interval width at the level of rounding of single numbers.
     rounded : float
-        Differences: part of a row's size, or of its change, that is rounding of its terms.
+        Differences: rounding error of a row, relative to its size or its change.
     cancelled, mixed : float
-        Differences: units in the last place of values up to which a change of them, and a change of a change, is rounding of terms that cancel.
+        Differences: first differences of values below `cancelled` units in the last place, and second ones below `mixed`, count as rounding of
+        terms that cancel.
     agree : float
-        Derivatives: relative difference from differences at which the complex step, or a derivative that is given, counts as wrong.
+        Derivatives: relative distance from differences above which the complex step, or a given derivative, counts as wrong.
     faint : float
-        Derivatives: part of the largest row below which a row has no size of its own.
+        Derivatives: size of a row, relative to the largest one, below which it counts as zero.
     aside : float
-        Derivatives: distance, in lengths over which the function bends, from a start at which nothing is special any more.
+        Derivatives: distance from the start, in lengths of the function, at which derivatives are tested: the start itself may be a special point.
     spacing : float
-        Noise: between the first samples, in lengths; each table after that is a thousand times closer.
+        Noise: distance between the first samples, in lengths of the function; each further table is a thousand times closer.
     steep : float
-        Noise: part of a function's change above which what seems to be a step is a steep piece.
+        Noise: steps above this part of a function's change count as steep pieces, not as noise.
     brief : float
-        Noise: seconds of a call that is not measured twice.
+        Time: seconds up to which the cost of a call is not measured a second time.
     felt, believed : float
-        Noise: of a solution, relative to its size, that may be why a branch ends; more than can be believed.
+        Noise of a solution, relative to its size: above `felt` it may be the reason why a branch ends; estimates are limited to `believed`.
     leap, kink : float
-        Breaks: of values and of slopes, relative to what a row changes by.
+        Breaks: smallest jump of values, and smallest change of slopes, relative to the change of a row.
     """
 
     roundoff: float = 1e-13
@@ -53,26 +54,26 @@ class DerivativeSettings:
 
 @dataclass(frozen=True)
 class ScaleSettings:
-    """What decides about the way from a guess to a solution, and about sizes of unknowns seen from there.
+    """Tolerances of the damped Newton's method and of the learned scales.
 
     Attributes
     ----------
     near : float
-        Newton's method: relative size of a correction from which on full steps are safe, and slow ones are those at a solution.
+        Newton's method: relative size of a correction below which full steps are safe, and slow convergence is accepted.
     close : float
-        Newton's method: relative size of a correction after which a point is good enough.
+        Newton's method: relative size of the last correction of a converged point.
     shortest : float
-        Newton's method: part of a step below which a way leads nowhere.
+        Newton's method: smallest damping factor; below it the method fails.
     moves : float
-        Scales: part of the length over which the equations bend, or of its size, by which an unknown has to move to have moved.
+        Scales: smallest movement of an unknown that counts, relative to its length or size.
     barely : float
-        Scales: part of its own size below which a length, or a move of an unknown in which the equations do not bend, is none.
+        Scales: smallest length, or movement of an unknown in which the equations are linear, that counts, relative to the unknown's size.
     travelled : float
-        Scales: part of the interval below which nothing was seen of it.
+        Scales: smallest part of the interval that the parameter must cover for the trace to count.
     faint : float
-        Scales: part of its length up to which an unknown that began at zero was moved by what `close` leaves.
+        Scales: movements of an unknown from zero below this part of its length count as errors of the converged points (`close`).
     rounding : float
-        Scales: part of other unknowns, of what an equation feels, or of a length that is rounding.
+        Scales: an unknown below this part of the others, of the size with an effect on an equation, or of its length is a rounding error.
     """
 
     near: float = 1e-3
@@ -87,18 +88,18 @@ class ScaleSettings:
 
 @dataclass(frozen=True)
 class IdentitySettings:
-    """What decides whether states, images and margins are equal.
+    """Tolerances for the identity of states, symmetries and margins.
 
     Attributes
     ----------
     same : float
-        Points, relative to their size, that are one; disagreement of an equation with its mirror image, relative to a row, that is none.
+        Largest relative distance of equal points; largest disagreement of an equation with its mirror image, relative to the row.
     image : float
-        Distance of the images of a point of order one below which two symmetries are one.
+        Largest distance between the images of a point of order one under two symmetries that are equal.
     cancelled : float
-        Part of the largest size of a row that large terms which cancel may leave.
+        Rounding error of large terms that cancel, relative to the largest size of the row.
     vanishes, step : float
-        Part of their change over a small step, in units of the solution, below which margins vanish; that step.
+        A margin counts as zero if it is below the part `vanishes` of its change over a small step; that step, relative to the solution.
     """
 
     same: float = 1e-7
@@ -110,16 +111,16 @@ class IdentitySettings:
 
 @dataclass(frozen=True)
 class SimulationSettings:
-    """What decides what starts of u' = F(u, p) settle on; all relative to the sizes of the unknowns.
+    """Tolerances of the simulation of u' = F(u, p); all relative to the sizes of the unknowns.
 
     Attributes
     ----------
     relative, absolute : float
-        Errors of a step of the integrator.
+        Error tolerances of the integrator.
     beside : float
-        Distance from an equilibrium at which a motion begins in its place, and at which two equilibria are one.
+        Offset of a start that is itself an equilibrium; largest distance between equal equilibria.
     still, far : float
-        Distance that counts as rest, and at which a motion has escaped.
+        Largest movement of a motion at rest; distance from the origin at which a motion has escaped.
     """
 
     relative: float = 1e-8
@@ -136,23 +137,25 @@ class LinearSettings:
     Attributes
     ----------
     real : float
-        Imaginary part, relative to the largest eigenvalue, that is rounding.
+        Imaginary parts below this part of the largest eigenvalue are rounding errors.
     conditioned : float
-        Condition of a Jacobian up to which its inverse is the reference for its eigenvalues.
+        Largest condition number of a Jacobian whose inverse is used as the reference for its eigenvalues.
     eigenvalues : float
-        Relative accuracy of ARPACK's; residual of a trial solution that tells what a matrix costs.
+        Relative accuracy of ARPACK's eigenvalues; residual of the trial solution that decides whether a matrix is written out.
     refined, enough, kept : float
-        Factors: residual at which a solution is good, at which it will do, and at which it will do with the factors of an earlier Jacobian.
+        Direct solvers: residual at which refinement stops; largest accepted residual; the same with the factors of an earlier Jacobian.
     gain : float
-        Factors: by how much refinement with those has to shrink the residual each time.
+        Direct solvers: factor by which each refinement with the factors of an earlier Jacobian must reduce the residual.
     border : float
-        Factors: size of the last row where the bordered matrix is factorised as a whole; part of its terms below which a Schur complement is rounding.
+        Direct solvers: relative size of the last row if the whole bordered matrix is factorised; a Schur complement below this part of its terms is a
+        rounding error.
     shift, beside : float
-        Factors: shifts, relative to the largest entry, of a singular matrix, and of one at its own eigenvalue.
+        Direct solvers: shift of a singular matrix, and distance of the shift of inverse iteration from its eigenvalue; relative to the largest entry.
     iterated, tolerated, growth : float
-        Krylov methods: accuracy asked for; one that will do where rounding allows no more; what is added to it for each unit by which the solution is larger than the side.
+        Krylov methods: requested residual; largest accepted residual where rounding prevents a smaller one; addition to it for each unit of the ratio of
+        the solution to the right-hand side.
     rough : float
-        Krylov methods: residual of a number that says only how near a singular matrix is.
+        Krylov methods: requested residual of the distance from a singular matrix.
     aside : float
         Krylov methods: shift of a matrix that is singular to the last bit.
     """

@@ -1,10 +1,10 @@
-"""Raw spectra of problems made of Python callables, and how near those with many unknowns are to a branch point.
+"""Raw spectra of problems made of Python callables, and the distance of problems with many unknowns from a branch point.
 
-Computing all eigenvalues would be dear there. At every point of a branch there is a cheap number, the distance: with M = [[F_u, F_p], [border]]
-and a fixed random b it is 1/|M^-1 b|, which falls to zero like the smallest singular value of M, linearly, at branch points and not at folds
-(rows hold it with a minus: nothing is past zero). Where it could have been zero between two points though the sign of det M is the same
-(:meth:`contvines.bifurcation.detect.Detector.look`), another copy of the problem is asked (`closer`): its rows hold the NEAREST eigenvalues to zero
-of F_u relative to its value at the start.
+For many unknowns, eigenvalues at every point would be expensive. A cheap number is computed instead, the distance: with
+M = [[F_u, F_p], [border]] and a fixed random vector b it is 1/|M^-1 b|. Like the smallest singular value of M, it vanishes linearly at branch
+points, and not at folds. (Rows of a branch hold minus the distance, so that it reads as a stable eigenvalue.) If it may have vanished between two
+points although the sign of det M is the same (:meth:`contvines.bifurcation.detect.Detector.look`), a copy of the problem (`closer`) is used
+there: its rows hold the NEAREST eigenvalues to zero of F_u relative to F_u at the start.
 """
 
 from __future__ import annotations
@@ -23,24 +23,25 @@ if TYPE_CHECKING:
     from .protocol import Problem
 
 
-WATCHED = 20  # unknowns up to which the eigenvalues of problems without a spectrum are all watched for branch points
-LARGEST = 300  # unknowns up to which a dense matrix of a sparse Jacobian is made for normal forms
-NEAREST = 4  # as many null vectors as a branch point may have
+# most unknowns of problems without a spectrum whose eigenvalues are all computed for branch points
+WATCHED = 20
+LARGEST = 300  # most unknowns of a sparse Jacobian that is converted to a dense matrix for normal forms
+NEAREST = 4  # eigenvalues next to zero that are computed: the most null vectors of a branch point
 
 
 def without_roundoff(values: np.ndarray) -> np.ndarray:
-    """Eigenvalues in which the two halves of a double real one, parted by roundoff, are real."""
+    """Set imaginary parts at the level of roundoff to zero: roundoff turns a double real eigenvalue into a complex pair."""
     values = np.asarray(values, dtype=complex)
     tiny = np.abs(np.imag(values)) <= LINEAR.real * np.abs(values).max(initial=0.0)
     return np.where(tiny, np.real(values) + 0.0j, values)
 
 
 def rounding(matrix: np.ndarray | csc_array, units: np.ndarray) -> float:
-    """By how much rounding of the entries of a matrix moves its eigenvalues, if these are well conditioned.
+    """Estimate how much rounding of the entries of a matrix moves its eigenvalues, if these are well conditioned.
 
-    Half a unit in the last place of the largest sum of a row, in the units of the unknowns or as they are, or, of an array, as LAPACK
-    balances it: each is a similarity, so the smallest counts. Entries of stiff fields (D/h^2) are much larger than the eigenvalues
-    next to the axis, whose digits they take.
+    Half a unit in the last place of the largest row sum of the matrix as it is, in the units of the unknowns or, for an array, balanced
+    by LAPACK. All three are similar matrices, so the smallest number counts. Entries of stiff discretised fields (D/h^2) are much larger
+    than the eigenvalues near the imaginary axis, which therefore lose digits.
     """
     sizes = abs(matrix)
     sums = [float((sizes @ units / units).max()), float(np.asarray(sizes.sum(axis=1)).max())]
@@ -51,7 +52,7 @@ def rounding(matrix: np.ndarray | csc_array, units: np.ndarray) -> float:
 
 
 def vectors_of(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Unit eigenvectors as columns, in the order of eigenvalues that are known."""
+    """Return unit eigenvectors as columns, in the order of the given eigenvalues."""
     found, vectors = np.linalg.eig(matrix)
     left, order = list(range(len(found))), []
     for value in values:
@@ -62,7 +63,7 @@ def vectors_of(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def reference_of(jacobian: np.ndarray, rows: np.ndarray, unknowns: np.ndarray) -> np.ndarray:
-    """The inverse of a Jacobian, or where it is nearly singular what brings its rows and columns to one size."""
+    """Return the inverse of a Jacobian or, if that is nearly singular, a diagonal matrix that scales its rows and columns to one size."""
     scaled = jacobian * unknowns / rows[:, None]
     if np.linalg.cond(scaled) < LINEAR.conditioned:
         return np.linalg.inv(jacobian)
@@ -70,17 +71,17 @@ def reference_of(jacobian: np.ndarray, rows: np.ndarray, unknowns: np.ndarray) -
 
 
 def side(rows: np.ndarray) -> np.ndarray:
-    """The fixed right-hand side b, in units of the equations, and zero for the border."""
+    """Return the fixed right-hand side b, in units of the equations, and zero for the border."""
     return np.append(rows * np.random.default_rng(11).standard_normal(len(rows)), 0.0)
 
 
 def distance(image: np.ndarray) -> float:
-    """1/|M^-1 b|, with M^-1 b in units of unknowns and parameter."""
+    """Return 1/|M^-1 b|, with M^-1 b in units of unknowns and parameter."""
     square = float(image.dot(image))
     return math.sqrt(len(image) / square) if 0.0 < square < math.inf else 0.0
 
 
 def is_large(problem: Problem) -> bool:
-    """Whether F_u is sparse and no dense matrix of it is made."""
+    """Whether F_u is sparse and too large for a dense matrix."""
     functions = getattr(problem, "functions", None)
     return getattr(functions, "structure", "dense") == "sparse" and problem.dimension > LARGEST

@@ -1,4 +1,4 @@
-"""Symmetries as users give them, callables, matrices or permutations; and whether the equations have them."""
+"""A user's symmetries (callables, matrices or permutations), and the test whether the equations have them."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from .derivatives import Differentiated
 
 
-MOST = 400  # elements of a group
+MOST = 400  # most elements of a group
 
 Image = Callable[[np.ndarray], np.ndarray]
 
 
 def linear_part(image: Image, n: int) -> Image:
-    """How an image acts on differences of states: without what it adds to all of them."""
+    """Return the linear part of an affine image, which acts on differences of states."""
     added = image(np.zeros(n))
     return image if not added.any() else lambda v: image(v) - added
 
@@ -32,7 +32,7 @@ def linear_part(image: Image, n: int) -> Image:
 def image_map(
     symmetry: Callable[[np.ndarray], ArrayLike] | ArrayLike, n: int, name: str = "mirror"
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """u -> image of u.
+    """Convert a user's symmetry to a function u -> image of u.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def image_map(
 
 
 def order_of(image: Image, n: int, most: int) -> int | None:
-    """How many times an image has to be applied before every point is back where it was; None if more than `most` times, or never."""
+    """Order of an image: how many times it must be applied to give the identity; None if more than `most` times."""
     probe = _probe(n)
     here = image(probe)
     within = IDENTITY.image * max(1.0, float(np.abs(here).max()))
@@ -94,12 +94,12 @@ def order_of(image: Image, n: int, most: int) -> int | None:
 
 
 def refuse_no_mirror(image: Image, n: int) -> None:
-    """Refuse a mirror that does not undo itself: of equivalent solutions only two are known as one, and a projection has no inverse.
+    """Raise an error for a mirror that is not its own inverse, such as a projection or a rotation by a quarter.
 
     Raises
     ------
     ValueError
-        A sentence with a state and what the mirror makes of it.
+        The message shows a state and its images.
     """
     if order_of(image, n, 2) is None:
         probe = _probe(n)
@@ -110,12 +110,12 @@ def refuse_no_mirror(image: Image, n: int) -> None:
 
 
 def refuse_no_group(generators: Sequence[tuple[str, Image]], n: int) -> None:
-    """Refuse images of which no power leads back, such as projections: they generate no finite group.
+    """Raise an error for images of infinite order, such as projections: they do not generate a finite group.
 
     Raises
     ------
     ValueError
-        A sentence with the name, a state, and its image.
+        The message contains the name, a state, and its image.
     """
     for name, image in generators:
         if order_of(image, n, MOST) is None:
@@ -131,11 +131,12 @@ def _shown(u: np.ndarray) -> str:
 
 
 def _probe(n: int) -> np.ndarray:
+    """A state without symmetry: fractional parts of multiples of sqrt(2)."""
     return np.modf(np.sqrt(2.0) * np.arange(1.0, n + 1.0))[0]
 
 
 def images_of(generators: list[Callable[[np.ndarray], np.ndarray]], n: int) -> list[Callable]:
-    """All elements, but for the identity, of the finite group that some images generate.
+    """Return all elements, except the identity, of the finite group that some images generate.
 
     Parameters
     ----------
@@ -145,17 +146,17 @@ def images_of(generators: list[Callable[[np.ndarray], np.ndarray]], n: int) -> l
     Raises
     ------
     ValueError
-        If there are more than `MOST` elements: the group is not finite, or too large to be listed.
+        If there are more than `MOST` elements: the group is infinite or too large.
     """
     probe = _probe(n)
-    known, elements = [probe], []
+    images, elements = [probe], []
     todo = list(generators)
     while todo:
         element = todo.pop()
         image = element(probe)
-        if any(np.abs(image - other).max() < IDENTITY.image for other in known):
+        if any(np.abs(image - other).max() < IDENTITY.image for other in images):
             continue
-        known.append(image)
+        images.append(image)
         elements.append(element)
         if len(elements) > MOST:
             raise ValueError(
@@ -166,7 +167,7 @@ def images_of(generators: list[Callable[[np.ndarray], np.ndarray]], n: int) -> l
 
 
 def smallest_image(u: np.ndarray, images: list[Callable], scale: np.ndarray) -> np.ndarray:
-    """Of u and its images the first in dictionary order; differences at roundoff do not count."""
+    """Return the first in dictionary order of u and its images; differences at roundoff are ignored."""
     best = u
     for image in images:
         other = image(u)
@@ -177,7 +178,7 @@ def smallest_image(u: np.ndarray, images: list[Callable], scale: np.ndarray) -> 
 
 
 def in_order(scale: np.ndarray) -> Callable[[np.ndarray], SupportsRichComparison]:
-    """A key of dictionary order, in which differences at roundoff do not count."""
+    """Return a sort key for dictionary order that ignores differences up to `scale`."""
 
     def compare(a: np.ndarray, b: np.ndarray) -> int:
         different = np.flatnonzero(np.abs(a - b) > scale)
@@ -186,20 +187,21 @@ def in_order(scale: np.ndarray) -> Callable[[np.ndarray], SupportsRichComparison
     return cmp_to_key(compare)
 
 
-REACHES = (0.01, 0.1, 0.4, 1.0)  # of the states tried, in lengths over which the equations bend
-ALIKE = 2  # in so many more states all unknowns move alike: random ones of a field are all stiffness
-NOISY = 30.0  # disagreement in units of the noise of a row that is no matter
-MIXED = 60  # unknowns up to which any constant matrix may stand between the rows of a state and of its image
-MORE = 6  # states more than such a matrix needs, which try it
+# distances of the test states from the start, in lengths over which the equations are nonlinear
+REACHES = (0.01, 0.1, 0.4, 1.0)
+ALIKE = 2  # further test states at which all unknowns move alike: at random states of a discretised field stiff terms dominate
+NOISY = 30.0  # largest accepted disagreement, in units of the noise of a row
+MIXED = 60  # most unknowns for which any constant matrix S is accepted in F(R u) = S F(u)
+MORE = 6  # states in addition to those that determine such a matrix; they test it
 
 Values = Callable[[np.ndarray, float], np.ndarray]
 
 
 class Asymmetry(NamedTuple):
-    """Where the equations at the image of a state are not the image of the equations.
+    """A state (u, p) at which F at the image of u is not the image of F.
 
-    ``found`` and ``wanted`` are a row there and what it should be, ``relative`` their difference, relative to the row's size; ``row``
-    is -1 where the images cannot be evaluated.
+    ``found`` is the entry ``row`` of F at the image, ``wanted`` its value by the symmetry, ``relative`` their difference relative to the row's
+    size; ``row`` is -1 if F cannot be evaluated at the images.
     """
 
     row: int
@@ -213,25 +215,25 @@ class Asymmetry(NamedTuple):
 def refuse_asymmetry(
     functions: Differentiated, values: Values, symmetry: tuple[str, Image], u: np.ndarray, mixed: bool
 ) -> None:
-    """Refuse a mirror or a symmetry of which the equations know nothing.
+    """Raise an error if the equations do not have a given symmetry.
 
     Parameters
     ----------
     functions : Differentiated
         The equations.
     values : callable
-        Their values, each state in its own piece.
+        (u, p) -> F, with the signs of the switches at u.
     symmetry : (str, callable)
-        What it is called, and the image.
+        Name and image.
     u : ndarray, shape (n,)
         The start.
     mixed : bool
-        Whether rows may stand in any order.
+        Whether the rows may be permuted, multiplied by numbers or combined; see `asymmetry`.
 
     Raises
     ------
     ValueError
-        A sentence with the row, the state and the size of the disagreement.
+        The message contains the row, the state and the size of the disagreement.
     """
     (name, image), varying, p = symmetry, functions.parameters.varying, functions.parameters.start
     lengths = functions.lengths, functions.parameter_length(u, p)
@@ -259,10 +261,10 @@ def asymmetry(
     noise: np.ndarray,
     mixed: bool,
 ) -> Asymmetry | None:
-    """The largest disagreement with F(R u, p) = S F(u, p), for an image R; None where it holds, or cannot be tried.
+    """Return the largest disagreement with F(R u, p) = S F(u, p) for an image R; None if the symmetry holds or cannot be tested.
 
-    States round the start and values of the parameter are tried. S is the linear part of R or, if `mixed`, any constant matrix:
-    rows may be written in another order or multiplied by numbers.
+    It is tested at states around the start and at several parameter values. S is the linear part of R or, if `mixed`, any constant
+    matrix: rows may be in another order or multiplied by numbers.
 
     Parameters
     ----------
@@ -271,7 +273,7 @@ def asymmetry(
     image : callable
         R.
     start, lengths : (ndarray of shape (n,), float)
-        Unknowns and parameter, and over which lengths F bends in them.
+        Unknowns and parameter, and the lengths over which F is nonlinear in them.
     noise : ndarray, shape (n,)
         Standard deviation of each row.
     mixed : bool
@@ -303,7 +305,7 @@ class Pair(NamedTuple):
 def _tried(
     values: Values, image: Image, states: Sequence[tuple[np.ndarray, float]]
 ) -> tuple[list[Pair], list[tuple[np.ndarray, float]]]:
-    """F at states and at their images, and the states at which only one of both can be evaluated."""
+    """F at states and at their images, and the states at which only one of the two can be evaluated."""
     tried, lost = [], []
     for u, p in states:
         here, there = _finite(values, u, p), _finite(values, image(u), p)
@@ -315,6 +317,7 @@ def _tried(
 
 
 def _states(u: np.ndarray, p: float, lengths: np.ndarray, reach: float) -> Iterator[tuple[np.ndarray, float]]:
+    """Generate test states: first those at which all unknowns move alike, then random ones at the distances `REACHES`."""
     draw, size = np.random.default_rng(12), float(np.median(lengths))
     for part in (1.0, -1.0):
         yield u + part * size, p + 0.1 * part * reach
@@ -355,13 +358,13 @@ def _worst(tried: list[Pair], turn: Image, noise: np.ndarray) -> Asymmetry | Non
 
 
 def _constant(tried: list[Pair], noise: np.ndarray) -> bool:
-    """Whether one constant matrix makes F at the images from F at the states."""
+    """Whether one constant matrix maps F at all states to F at their images."""
     here, there = np.array([pair.here for pair in tried]), np.array([pair.there for pair in tried])
     sizes = np.maximum(np.abs(here).max(axis=0), np.abs(there).max(axis=0))
     sizes[sizes == 0.0] = 1.0
     here, there = here / sizes, there / sizes
     weights = np.linalg.norm(np.hstack([here, there]), axis=1)
-    weights[weights == 0.0] = 1.0  # near states are small, and tell as much
+    weights[weights == 0.0] = 1.0  # F is small at near states, which count as much as the others
     matrix = np.linalg.lstsq(here / weights[:, None], there / weights[:, None], rcond=None)[0]
     mixing = 1.0 + np.abs(matrix).sum(axis=0)
     allowed = IDENTITY.same * mixing * weights[:, None] + NOISY * mixing * float((noise / sizes).max())

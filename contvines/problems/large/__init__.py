@@ -1,1 +1,1 @@
-"""Problems with many unknowns: sparse and matrix-free equations."""
+"""Problems with many unknowns: kernels for sparse and matrix-free Jacobians."""

@@ -1,8 +1,8 @@
-"""The bordered system of a Jacobian that is a LinearOperator, by GMRES.
+"""GMRES for the bordered system of a Jacobian that is a LinearOperator.
 
-The unknowns are counted in units of their scales and the rows in units of theirs. With a preconditioner P of F_u the bordered matrix
-has the preconditioner [[P^-1, F_p], [border]], applied by block elimination: the border adds no iterations, and next to a fold, where
-F_u is nearly singular, it is as good as elsewhere.
+Unknowns and rows are in units of their scales. With a preconditioner P, an approximate inverse of F_u, the bordered matrix is preconditioned by
+[[P^-1, F_p], [border]], which is inverted by block elimination. The border then adds no iterations, and the preconditioner is as good
+next to a fold, where F_u is nearly singular, as elsewhere.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from ..dense import Equations
 
 
-RESTART, ALL = 80, 300  # vectors kept; as many as there are unknowns where these are few
-CYCLES = 40  # restarts at most
-GAIN = 0.5  # a cycle has to shrink the residual at least that much ...
-IDLE = 4  # ... or it is over after so many that do not
+RESTART, ALL = 80, 300  # vectors after which GMRES restarts; up to ALL unknowns it does not restart
+CYCLES = 40  # most restarts
+GAIN = 0.5  # factor by which a cycle should reduce the residual ...
+IDLE = 4  # ... GMRES ends after so many cycles that do not
 
 Linear = Callable[[np.ndarray], np.ndarray]
 
@@ -38,18 +38,19 @@ Linear = Callable[[np.ndarray], np.ndarray]
 def restarted(
     apply: Linear, side: np.ndarray, guess: np.ndarray | None, accuracy: float
 ) -> tuple[np.ndarray, float]:
-    """Solution of a linear system by restarted GMRES, and its residual relative to the side.
+    """Solve a linear system by restarted GMRES; return the solution and its residual relative to the right-hand side.
 
-    It ends where a cycle gains nothing any more: rounding may allow no more than that.
+    It also ends when cycles no longer reduce the residual, since rounding limits the accuracy.
 
     Parameters
     ----------
     apply : callable
         The (preconditioned) matrix times a vector.
     side : ndarray, shape (n,)
+        Right-hand side.
     guess : ndarray or None
     accuracy : float
-        Relative residual at which it ends.
+        Requested relative residual.
     """
     n, size = len(side), float(np.linalg.norm(side))
     if size == 0.0:
@@ -79,18 +80,18 @@ def restarted(
 
 
 def solved(gap: float, growth: float) -> bool:
-    """Whether a relative residual will do: more is lost to rounding the larger the solution is relative to the side."""
+    """Whether a relative residual is acceptable; rounding errors grow with the ratio of the solution to the right-hand side, `growth`."""
     return gap < LINEAR.tolerated + LINEAR.growth * growth
 
 
 class Bordered:
-    """[[F_u, F_p], [border]] in units of the scales, with its preconditioner.
+    """The bordered matrix [[F_u, F_p], [border]] in units of the scales, with its preconditioner.
 
     Parameters
     ----------
     data : AlgebraicProblem
     work
-        Has F_u and F_p.
+        Workspace with F_u and F_p.
     border : ndarray, shape (N + 1,)
     """
 
@@ -104,11 +105,11 @@ class Bordered:
         self.border /= self.length
         self.rows = np.append(rows, self.length)
         self.column, self.corner = self._eliminated()
-        self.shift = 0.0  # of F_u, in units of rows and unknowns
-        self.growth = 0.0  # of the last solution: its size relative to that of the side
+        self.shift = 0.0  # subtracted from the diagonal of F_u, in units of rows and unknowns
+        self.growth = 0.0  # ratio of the last solution to its right-hand side
 
     def _eliminated(self) -> tuple[np.ndarray | None, float]:
-        """The preconditioner times F_p and its Schur complement; None where that would be rounding."""
+        """The preconditioner times F_p, and the Schur complement; None if the latter is only rounding."""
         if self.inverse is None:
             return None, 1.0
         column = np.ravel(self.inverse @ self.work.derivative) / self.columns[:-1] * self.columns[-1]
@@ -118,13 +119,13 @@ class Bordered:
         return (column, corner) if fine else (None, 1.0)
 
     def product(self, x: np.ndarray) -> np.ndarray:
-        """The matrix, in units of unknowns and rows, times a vector."""
+        """Multiply the matrix, in units of unknowns and rows, with a vector."""
         inner = x[:-1] * self.columns[:-1]
         top = np.ravel(self.work.jacobian @ inner) + self.work.derivative * (x[-1] * self.columns[-1])
         return np.append(top / self.rows[:-1] - self.shift * x[:-1], self.border @ x)
 
     def precondition(self, side: np.ndarray) -> np.ndarray:
-        """The preconditioner, from units of rows to those of unknowns, times a vector."""
+        """Multiply the preconditioner, from units of rows to those of unknowns, with a vector."""
         if self.inverse is None:
             return side
         top = np.ravel(self.inverse @ (side[:-1] * self.rows[:-1])) / self.columns[:-1]
@@ -134,7 +135,7 @@ class Bordered:
         return np.append(top - self.column * last, last)
 
     def solve(self, side: np.ndarray, guess: np.ndarray | None, accuracy: float) -> tuple[np.ndarray, float]:
-        """The solution in the units of the problem, and how accurate it is."""
+        """Return the solution in the problem's units, and its relative residual."""
         start = None if guess is None else guess / self.columns
         right = self.precondition(side / self.rows)
         found, gap = restarted(lambda x: self.precondition(self.product(x)), right, start, accuracy)
@@ -150,9 +151,9 @@ def iterate(
     sides: np.ndarray,
     tangent: np.ndarray | None,
 ) -> tuple[np.ndarray, Bordered]:
-    """Solutions of the bordered system, and the system itself; the last `tangent` is a guess of the next one.
+    """Solve the bordered system for two right-hand sides; return the solutions and the system.
 
-    NaN where GMRES does not converge, which the problem is told. `work` has F_u and F_p.
+    The last `tangent` is the guess for the second solution. Where GMRES does not converge, the solution is NaN and ``data.unsolved`` is set.
     """
     matrix = Bordered(data, work, border)
     data.unsolved = False
@@ -173,7 +174,7 @@ def iterate(
 
 
 def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarray) -> np.ndarray | None:
-    """The last tangent with the length asked for now."""
+    """The last tangent, scaled so that it fulfils the border equation; None if that is impossible."""
     if tangent is None or not (sides[:-1, 1] == 0.0).all():
         return None
     along = float(border @ tangent)
@@ -181,10 +182,10 @@ def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarr
 
 
 def distance_to_singular(data: Equations, matrix: Bordered) -> float | None:
-    """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`contvines.problems.spectra`.
+    """Return the distance |M^-1 b| / |M^-1 M^-1 b| of the bordered matrix from a singular one; see :mod:`contvines.problems.spectra`.
 
-    Without a sign of the determinant this is all that tells a branch point, so that one application of the inverse, in which a null
-    vector may have a small share by chance, is not enough. None where GMRES does not converge.
+    Since the sign of the determinant is unknown, branch points are found by this number alone. One application of the inverse is not
+    enough, since the null vector may have a small component in its result by chance. None if GMRES does not converge.
     """
     side, sizes = data.side, []
     for _ in range(2):
@@ -198,13 +199,16 @@ def distance_to_singular(data: Equations, matrix: Bordered) -> float | None:
 
 
 class Inverse:
-    """(F_u - shift)^-1, by GMRES, in the place of factors; the shift in units of rows and unknowns, or as eigenvalues of F_u have it."""
+    """(F_u - shift)^-1 by GMRES, with the interface of factors.
+
+    The shift is in units of rows and unknowns or, if `plain`, in units of the eigenvalues of F_u.
+    """
 
     def __init__(self, data: Equations, work: Linearised, shift: float, plain: bool = False) -> None:
         self.rows, self.columns = data.sizes()
         self.jacobian, self.inverse = work.jacobian, data.preconditioner_at()
         self.shift = shift * (self.columns if plain else self.rows)
-        self.unsolved = False  # whether GMRES has failed, as where the matrix is singular
+        self.unsolved = False  # whether GMRES has failed, as it does if the matrix is singular
 
     def _precondition(self, side: np.ndarray) -> np.ndarray:
         if self.inverse is None:
@@ -215,7 +219,7 @@ class Inverse:
         return np.ravel(self.jacobian @ (x * self.columns)) - self.shift * x
 
     def solve(self, side: np.ndarray) -> np.ndarray:
-        """The inverse applied to a vector."""
+        """Apply the inverse to a vector."""
         right = self._precondition(np.ravel(side))
         found, gap = restarted(lambda x: self._precondition(self._product(x)), right, None, LINEAR.iterated)
         size = float(np.linalg.norm(right))
@@ -224,7 +228,7 @@ class Inverse:
 
 
 def nearest_eigenvalues(data: Equations, work: Linearised) -> np.ndarray:
-    """The eigenvalues of F_u next to zero, relative to the sizes of rows and unknowns; shifted where it is singular."""
+    """Return the eigenvalues of F_u nearest to zero, relative to the sizes of rows and unknowns; a singular F_u is shifted first."""
     rows, units = data.sizes()
     values = np.zeros(0)
     for shift in (0.0, LINEAR.aside):
@@ -236,13 +240,13 @@ def nearest_eigenvalues(data: Equations, work: Linearised) -> np.ndarray:
 
 
 class Solving(Protocol):
-    """Factors of a matrix, or what solves with it in another way."""
+    """Factors of a matrix, or another object that solves linear systems with it."""
 
     def solve(self, sides: np.ndarray, /) -> np.ndarray: ...
 
 
 def by_arpack(solve: Callable[..., Any], matrix: object, n: int, **options: Any) -> np.ndarray:
-    """Eigenvalues that `solve`, which is eigs or eigsh, finds from a fixed start: those that converge, none where it fails."""
+    """Return the eigenvalues that ARPACK (`solve`: eigs or eigsh) finds from a fixed start: the converged ones, none if it fails."""
     start = np.random.default_rng(5).standard_normal(n)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
@@ -256,12 +260,12 @@ def by_arpack(solve: Callable[..., Any], matrix: object, n: int, **options: Any)
 
 
 def nearest_sparse(factors: Solving | None, reference: csc_array, n: int) -> np.ndarray:
-    """The NEAREST eigenvalues to zero of reference^-1 F_u, from factors of F_u: the inverses of the largest of F_u^-1 reference.
+    """Return the NEAREST eigenvalues to zero of reference^-1 F_u, as inverses of the largest eigenvalues of F_u^-1 reference.
 
     Parameters
     ----------
     factors
-        Of F_u; None where that is singular.
+        Factors of F_u; None if it is singular.
     reference : sparse matrix, shape (n, n)
     n : int
     """

@@ -1,8 +1,8 @@
-"""Interpreted kernels with a sparse Jacobian: one factorisation a step, and bordering that leaves it sparse.
+"""Kernels in Python with a sparse Jacobian: one sparse factorisation for each step.
 
-With the factors of F_u = A the bordered system is solved by block elimination and iterative refinement. Next to a fold A is
-nearly singular while the bordered matrix is not; where refinement does not get there, the bordered matrix itself is factorised,
-its last row made small so that it is chosen as a pivot last and the factors stay sparse (about twice the work).
+With the factors of A = F_u the bordered system is solved by block elimination and iterative refinement. Next to a fold A is
+nearly singular while the bordered matrix is not. If refinement does not converge there, the whole bordered matrix is factorised; its
+last row is made small so that it is the last pivot and the factors stay sparse (about twice the work).
 
 A LinearOperator is never factorised: GMRES solves the bordered system, with the user's preconditioner for A.
 """
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from .matrix_free import Bordered
 
 
-SWEEPS = 8  # of refinement with the factors of an earlier Jacobian
+SWEEPS = 8  # most refinements with the factors of an earlier Jacobian
 
 
 class Elimination(NamedTuple):
-    """Factors, border, F_u^-1 F_p and Schur complement of a block elimination."""
+    """A block elimination: factors of F_u, border, ``column`` = F_u^-1 F_p, and ``corner``, the Schur complement."""
 
     factors: Factors
     border: np.ndarray
@@ -47,7 +47,7 @@ class Elimination(NamedTuple):
 
 @dataclass
 class SparseWork:
-    """F, F_u, F_p and the factors of F_u, made when they are first needed; `near` are those of the Jacobian before, if they are kept."""
+    """F, F_u, F_p and the factors of F_u, which are computed on first use; `near` are the factors of the previous Jacobian, if `keep`."""
 
     residual: np.ndarray
     derivative: np.ndarray
@@ -57,14 +57,14 @@ class SparseWork:
     keep: bool = True
     failed: bool = False
     method: Method = field(default_factory=Method)
-    eliminated: Elimination | None = None  # the last one
+    eliminated: Elimination | None = None  # the last block elimination
     iterated: Bordered | None = None  # the last bordered system of a matrix-free Jacobian
     distance: float = 1.0
-    tangent: np.ndarray | None = None  # the last one of a matrix-free Jacobian, a guess of the next one
+    tangent: np.ndarray | None = None  # the last tangent of a matrix-free Jacobian: guess for the next one
 
     @property
     def matrix(self) -> csc_array:
-        """The Jacobian, where it is a matrix."""
+        """The Jacobian, which must be a matrix."""
         assert not isinstance(self.jacobian, Operator)
         return self.jacobian
 
@@ -73,8 +73,8 @@ class SparseWork:
 
 
 def workspace(problem: Problem) -> SparseWork:
-    """Arrays for a problem."""
-    # eigenvalues need factors of the very Jacobian, so that those of another one save nothing
+    """Return the arrays for a problem."""
+    # eigenvalues need the factors of the current Jacobian, so that those of an earlier one save nothing
     keep = problem.spectrum == "none"
     return SparseWork(np.zeros(problem.dimension), np.zeros(problem.dimension), keep=keep)
 
@@ -111,9 +111,9 @@ def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> flo
 
 # ---------------------------------------------------------------------- factors
 def _factorise(work: SparseWork) -> Factors | None:
-    """Factors of F_u, or None where it is singular."""
+    """Factors of F_u; None if it is singular."""
     if work.factors is None and not work.failed:
-        work.near = None  # two sets of factors are never kept at once
+        work.near = None  # to save memory, only one set of factors is kept
         try:
             work.factors = work.method.factorise(work.matrix)
         except RuntimeError:
@@ -139,7 +139,7 @@ def _product(work: SparseWork, border: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def _eliminate(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float] | None:
-    """Block elimination with refinement, if that will do with the factors of an earlier Jacobian; None where it is not accurate."""
+    """Block elimination with refinement, first with the factors of an earlier Jacobian, then with new ones; None if it is not accurate."""
     if work.factors is None and work.near is not None:
         found = _refined(work, work.near, border, sides, LINEAR.gain, SWEEPS, LINEAR.kept)
         if found is not None:
@@ -157,23 +157,24 @@ def _refined(
     sweeps: int,
     enough: float,
 ) -> tuple[np.ndarray, float] | None:
-    """Block elimination with factors of F_u, or of a matrix that is nearly that, and iterative refinement.
+    """Block elimination with factors of F_u or of a matrix near it, and iterative refinement.
 
     Parameters
     ----------
     work, factors, border, sides
     shrink : float
-        The residual has to shrink by this factor each time.
+        Each refinement must reduce the residual by this factor.
     sweeps : int
-        At most so many times.
+        Most refinements.
     enough : float
-        Relative residual that will do.
+        Largest accepted relative residual.
 
     Returns
     -------
     (ndarray, float) or None
-        Solutions and sign of the determinant. It is that of the bordered matrix with the factors in place of F_u: as refinement converges,
-        the determinant of one relative to the other is positive. (That of F_u itself may be of another sign, beyond a fold.)
+        Solutions and sign of the determinant; None if the residual is too large. The sign is that of the bordered matrix with the factored
+        matrix in place of F_u. Since refinement converges, the ratio of the two determinants is positive. (Beyond a fold, the determinants of
+        the factored matrix and of F_u alone may have different signs.)
     """
     with np.errstate(all="ignore"):
         columns = factors.solve(np.column_stack([sides[:-1, 0], work.derivative]))
@@ -208,7 +209,7 @@ def _refined(
 
 
 def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
-    """The bordered matrix factorised as a whole."""
+    """Factorise the whole bordered matrix; return solutions and sign of the determinant (0: singular)."""
     top = float(np.abs(work.matrix.data).max(initial=1.0))
     factor = LINEAR.border * top / float(np.abs(border).max())
     scaled = sides.copy()
@@ -231,7 +232,7 @@ def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np
 def bordered(
     data: Equations, work: SparseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
-    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant (1: not known)."""
+    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); return the sign of the determinant (1 if F_u is matrix-free)."""
     sides = np.zeros((len(border), 2))
     sides[:-1, 0] = -work.residual
     sides[-1] = n, 1.0
@@ -249,7 +250,7 @@ def bordered(
 
 # ---------------------------------------------------------------------- eigenvalues
 def distance_to_singular(data: Equations, work: SparseWork) -> float:
-    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.spectra`. Without refinement: it is a rough number."""
+    """Return 1/|M^-1 b| for the bordered matrix M of the last solution, without refinement; see :mod:`contvines.problems.spectra`."""
     if work.iterated is not None:
         found = matrix_free.distance_to_singular(data, work.iterated)
         work.distance = work.distance if found is None else found
@@ -266,7 +267,7 @@ def distance_to_singular(data: Equations, work: SparseWork) -> float:
 
 
 def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
-    """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
+    """Return the eigenvalues of F_u nearest to zero, relative to F_u at the first call (the reference)."""
     if isinstance(work.jacobian, Operator):
         return matrix_free.nearest_eigenvalues(data, work)
     factors, reference = _factorise(work), data.reference
@@ -279,9 +280,10 @@ def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
 
 
 def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.ndarray:
-    """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
+    """Return the eigenvalues of F_u nearest to a shift, by ARPACK in shift-invert mode; if the shift is 0, with the existing factors.
 
-    Without a matrix they are obtained by solving with the preconditioner; without that, too, the rightmost ones are looked for.
+    A matrix-free F_u is inverted by GMRES with the user's preconditioner; without a preconditioner the rightmost eigenvalues are
+    computed instead.
 
     Parameters
     ----------
@@ -293,7 +295,7 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
     Returns
     -------
     ndarray of complex, shape (count,)
-        Where ARPACK finds fewer, the outermost is repeated.
+        If ARPACK finds fewer, the leftmost one is repeated.
     """
     matrix, n = work.jacobian, len(work.residual)
     if count >= n - 1:
@@ -322,7 +324,7 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
 
 
 def eigenvectors(matrix: csc_array | Operator, values: np.ndarray) -> np.ndarray:
-    """Unit eigenvectors as columns, for eigenvalues that are known, by inverse iteration.
+    """Return unit eigenvectors as columns, in the order of the given eigenvalues, by inverse iteration.
 
     Raises
     ------
@@ -348,7 +350,7 @@ def eigenvectors(matrix: csc_array | Operator, values: np.ndarray) -> np.ndarray
 
 
 def transpose(data: Equations, work: SparseWork, column: np.ndarray, other: SparseWork) -> None:
-    """The transposed Jacobian, with another last column, into another workspace."""
+    """Write the transposed Jacobian, and another last column, into another workspace."""
     if isinstance(work.jacobian, Operator):
         raise ValueError(
             "loci need the transposed Jacobian: give it as an array or a sparse matrix, not as a LinearOperator"
@@ -358,7 +360,7 @@ def transpose(data: Equations, work: SparseWork, column: np.ndarray, other: Spar
 
 
 def matrix(data: Equations, work: SparseWork) -> np.ndarray:
-    """F_u as it stands in a workspace, dense."""
+    """Return F_u of a workspace as a dense array."""
     if len(work.residual) > LARGEST or isinstance(work.jacobian, Operator):
         raise ValueError(f"it needs the matrix of F_u, of up to {LARGEST} unknowns")
     return work.matrix.toarray()

@@ -1,4 +1,4 @@
-"""Factors of sparse matrices: SuperLU, or LAPACK's banded ones where the unknowns can be put into a narrow band."""
+"""Factors of sparse matrices by SuperLU, or by LAPACK's band routines if the unknowns can be ordered to a narrow band."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from scipy.linalg import get_lapack_funcs
 from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
 
-NARROW = 48  # diagonals up to which a band is tried
-FILL = 3.0  # times the entries of SuperLU's factors: a wider band is no gain
+NARROW = 48  # most diagonals of a band
+FILL = 3.0  # largest ratio of the band's entries to those of SuperLU's factors at which the band is used
 BAND_FACTORISE, BAND_SOLVE = get_lapack_funcs(("gbtrf", "gbtrs"), dtype=np.float64)
 
 
 def parity(order: np.ndarray) -> int:
-    """0 for an even permutation, 1 for an odd one."""
+    """Return 0 for an even permutation, 1 for an odd one."""
     n = len(order)
     graph = sp.csr_matrix((np.ones(n, dtype=np.int8), (np.arange(n), order)), shape=(n, n))
     return (n - connected_components(graph, directed=False)[0]) % 2
@@ -38,19 +38,20 @@ class SuperLUFactors:
         If the matrix is singular.
     """
 
-    dear = True  # making them costs far more than a solution with them
+    # factorisation costs far more than a solution, so that factors are kept for the next Jacobian
+    dear = True
 
     def __init__(self, matrix: sp.csc_array, ordering: str) -> None:
         self.inner = splu(matrix, permc_spec=ordering)
         self.nnz = int(self.inner.nnz)
 
     def solve(self, sides: np.ndarray) -> np.ndarray:
-        """The inverse applied to one or more columns."""
+        """Apply the inverse to one or more columns."""
         return self.inner.solve(sides)
 
     @cached_property
     def sign(self) -> float:
-        """Of the determinant; 0 where that is zero."""
+        """Sign of the determinant; 0 if that is zero."""
         diagonal = self.inner.U.diagonal()
         if not (diagonal != 0.0).all():
             return 0.0
@@ -60,16 +61,18 @@ class SuperLUFactors:
 
 @dataclass
 class Band:
-    """Where the entries of a sparse matrix lie in LAPACK's banded form.
+    """Positions of the entries of a sparse matrix in LAPACK's banded form.
 
     Attributes
     ----------
     indices, indptr : ndarray
-        The pattern (csc) it was made for.
+        Sparsity pattern (csc).
     order : ndarray
         Unknowns and equations in the order of the band.
     below, above : int
-        Diagonals.
+        Numbers of diagonals below and above the main one.
+    places : (ndarray, ndarray)
+        Row and column of each entry in the banded form.
     """
 
     indices: np.ndarray
@@ -81,7 +84,7 @@ class Band:
 
     @classmethod
     def of(cls, matrix: sp.csc_array) -> Band | None:
-        """For the pattern of a matrix, in its own order or that of Cuthill and McKee; None where the band is wide."""
+        """Return the band of a matrix, in its own order or in that of Cuthill and McKee; None if the band is too wide."""
         n = len(matrix.indptr) - 1
         columns = np.repeat(np.arange(n), np.diff(matrix.indptr))
         rows = matrix.indices
@@ -101,12 +104,12 @@ class Band:
         return best
 
     def fits(self, matrix: sp.csc_array) -> bool:
-        """Whether a matrix has this pattern."""
+        """Whether a matrix has this sparsity pattern."""
         return np.array_equal(matrix.indptr, self.indptr) and np.array_equal(matrix.indices, self.indices)
 
     @property
     def entries(self) -> int:
-        """Room that the factors take."""
+        """Number of entries of the factors."""
         return (2 * self.below + self.above + 1) * len(self.order)
 
 
@@ -119,7 +122,7 @@ class BandFactors:
         If the matrix is singular.
     """
 
-    dear = False
+    dear = False  # factorisation is cheap; see `SuperLUFactors`
 
     def __init__(self, matrix: sp.csc_array, band: Band) -> None:
         self.band, self.nnz = band, band.entries
@@ -130,7 +133,7 @@ class BandFactors:
             raise RuntimeError("the matrix is singular")
 
     def solve(self, sides: np.ndarray) -> np.ndarray:
-        """The inverse applied to one or more columns."""
+        """Apply the inverse to one or more columns."""
         band = self.band
         found, _ = BAND_SOLVE(
             self.table, band.below, band.above, np.asfortranarray(sides[band.order]), self.pivots
@@ -141,7 +144,7 @@ class BandFactors:
 
     @cached_property
     def sign(self) -> float:
-        """Of the determinant."""
+        """Sign of the determinant."""
         diagonal = self.table[self.band.below + self.band.above]
         odd = np.count_nonzero(diagonal < 0.0) + np.count_nonzero(self.pivots != np.arange(len(diagonal)))
         return -1.0 if odd % 2 else 1.0
@@ -152,18 +155,18 @@ Factors = SuperLUFactors | BandFactors
 
 @dataclass
 class Method:
-    """How the matrices of one problem are factorised; found out at the first one."""
+    """Factorisation of one problem's matrices: column ordering or band, chosen at the first matrix."""
 
     ordering: str = ""
     band: Band | None = None
 
     def factorise(self, matrix: sp.csc_array) -> Factors:
-        """Factors of a matrix (csc).
+        """Factorise a matrix (csc).
 
         Raises
         ------
         RuntimeError
-            If it is singular.
+            If the matrix is singular.
         """
         if self.band is not None and self.band.fits(matrix):
             return BandFactors(matrix, self.band)
