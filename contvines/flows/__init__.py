@@ -1,4 +1,4 @@
-"""Cycles of smooth flows: differential equations, their cycles by orthogonal collocation, and the bifurcations of these."""
+"""Smooth flows: differential equations, their equilibria, their cycles by orthogonal collocation, and bifurcations of cycles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions at many points at once: those of users in Python, and tables of C functions."""
+"""Evaluation of functions at many points at once: users' functions in Python, and tables of C functions."""
 
 from __future__ import annotations
 
@@ -18,23 +18,25 @@ if TYPE_CHECKING:
 
     from ..problems.functions import Parameters
 
-TRIED = 7  # points at which it is tried whether a function may be asked at all of them at once
+TRIED = 7  # points at which it is tested whether a function accepts arrays of points
 _FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_int64, *[ctypes.c_void_p] * 4)
 
 
 class AtPoints:
-    """A user's function of (x, p), or (x, p, t), at points (n, d) and times (n,): of all at once, as columns, where it is written for arrays.
+    """A user's function of (x, p), or (x, p, t), evaluated at points (n, d) and times (n,).
+
+    If the function is vectorised, it is called once with all points as columns, else once for each point.
 
     Parameters
     ----------
     f : callable
     forced : bool
-        Whether it depends on time.
+        Whether f depends on time.
     shape : tuple of int
-        Of what it returns for one point.
+        Shape of the result for one point.
     """
 
-    many: bool | None = None  # whether it is written for arrays; None: not known
+    many: bool | None = None  # whether f is vectorised; None: unknown
 
     def __init__(self, f: Callable, forced: bool, shape: tuple[int, ...]) -> None:
         self.f, self.forced, self.shape = f, forced, shape
@@ -42,12 +44,12 @@ class AtPoints:
     def __call__(
         self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
     ) -> np.ndarray:
-        """Values, shape (n, *shape).
+        """Return the values, shape (n, *shape).
 
         Raises
         ------
         NotEvaluable
-            If one has another shape. What the function itself raises goes on.
+            If a value has another shape. Errors of the function itself are not caught.
         """
         return (self._together if self.many else self._each)(x, parameters, t)
 
@@ -70,17 +72,17 @@ class AtPoints:
     def find(
         self, agree: float, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None
     ) -> None:
-        """Find out whether it is written for arrays, by values at some points that agree to a relative accuracy."""
+        """Test whether f is vectorised: values of one call and of single calls must agree to the relative accuracy `agree`."""
         if self.many is not None or len(x) < 3:
             return
         x, t = x[:TRIED], None if t is None else t[:TRIED]
         try:
             single = self._each(x, parameters, t)
-        except Exception:  # the points may be outside of where it is defined
+        except Exception:  # the points may be outside the domain of f
             return
         try:
             together = self._together(x, parameters, t)
-        except Exception:  # a function of one point may fail in any way when it is called with many
+        except Exception:  # a function for one point may fail in any way when it is called with many
             self.many = False
             return
         size = agree * np.abs(single).max(initial=0.0)
@@ -92,7 +94,7 @@ def _full(given: object) -> np.ndarray:
 
 
 def _stacked(given: object, n: int, shape: tuple[int, ...]) -> np.ndarray:
-    """What a function of arrays of n numbers returned, nested as `shape` has it, as array (n, *shape)."""
+    """Convert the result of a vectorised function, nested lists or arrays of shape (*shape, n), to an array (n, *shape)."""
     if not shape or (isinstance(given, np.ndarray) and given.dtype != object):
         value = np.asarray(given)
         if value.shape != (*shape, n):
@@ -118,9 +120,9 @@ class CompiledRates:
 
         void f(int64_t n, const double *x, const double *t, const double *p, double *out)
 
-    with n points x (n, d), their times t (n; null of autonomous flows), the parameters p in the order of ``params``, and what is
-    asked for in ``out``: f (n, d), df/dx (n, d, d), df/dp (n, d, number of parameters). Arrays are stored row by row. Where a point is
-    outside of the domain of f, NaN is the answer. The second and third pointer may be null: then derivatives are differences.
+    with n points x (n, d), their times t (n; null for autonomous flows), the parameters p in the order of ``params``, and the result
+    ``out``: f (n, d), df/dx (n, d, d), df/dp (n, d, number of parameters). Arrays are stored row by row. Outside the domain of f the
+    functions write NaN. The second and third pointer may be null: derivatives are then computed by differences.
 
     Parameters
     ----------
@@ -132,7 +134,7 @@ class CompiledRates:
     Raises
     ------
     ValueError
-        If there is no such library or table, or no first function in it.
+        If there is no such library or table, or its first pointer is null.
     """
 
     def __init__(self, library: str | Path | int, table: str = "table") -> None:
@@ -140,7 +142,8 @@ class CompiledRates:
             addresses = (ctypes.c_void_p * 3).from_address(library)
         else:
             try:
-                self.library = ctypes.CDLL(str(Path(library).resolve()))  # kept: the functions live in it
+                # a reference keeps the library loaded while its functions are in use
+                self.library = ctypes.CDLL(str(Path(library).resolve()))
                 addresses = (ctypes.c_void_p * 3).in_dll(self.library, table)
             except (OSError, ValueError) as error:
                 raise ValueError(f"library = {str(library)!r} with a table {table!r}: {error}") from None
@@ -152,7 +155,7 @@ class CompiledRates:
 
     @property
     def complete(self) -> bool:
-        """Whether all derivatives are there."""
+        """Whether the table has both derivatives."""
         return all(self.addresses)
 
     def at_points(
@@ -163,7 +166,7 @@ class CompiledRates:
         t: np.ndarray | float | None,
         shape: tuple[int, ...],
     ) -> np.ndarray:
-        """One of the three functions at points (n, d), with result of shape (n, *shape)."""
+        """Call one of the three functions at points (n, d); return an array of shape (n, *shape)."""
         x = np.ascontiguousarray(x, dtype=float)
         p = np.array(
             [*vars(parameters).values()] if hasattr(parameters, "__dict__") else [parameters], dtype=float
@@ -181,7 +184,7 @@ class CompiledRates:
         t: np.ndarray | float | None,
         shape: tuple[int, ...],
     ) -> np.ndarray:
-        """For arguments as functions in Python have them: a point (d,), or points (d, n)."""
+        """Call one of the three functions with the arguments of a function in Python: a point (d,), or points (d, n)."""
         x = np.asarray(x)
         if np.iscomplexobj(x):
             raise TypeError("compiled functions take real numbers")
@@ -191,17 +194,17 @@ class CompiledRates:
     def __call__(
         self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
     ) -> np.ndarray:
-        """f."""
+        """Return f."""
         return self._one(self.f, x, parameters, t, (len(x),))
 
     def jacobian(
         self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
     ) -> np.ndarray:
-        """df/dx."""
+        """Return df/dx."""
         return self._one(self.dfdx, x, parameters, t, (len(x), len(x)))
 
     def derivatives(self, names: list[str]) -> dict[str, Callable[..., np.ndarray]]:
-        """df/dp by the names of the parameters."""
+        """Return functions for df/dp by the names of the parameters."""
 
         def by(k: int) -> Callable[..., np.ndarray]:
             return lambda x, p, t=None: self._one(self.dfdp, x, p, t, (len(x), len(names)))[:, k]

@@ -1,4 +1,4 @@
-"""CycleMesh: how a cycle is described by numbers, on a mesh that is adapted and refined."""
+"""CycleMesh: base class of problems of cycles, with their unknowns on a mesh that is adapted and refined."""
 
 from __future__ import annotations
 
@@ -23,33 +23,36 @@ if TYPE_CHECKING:
     from ..problems.protocol import Kernels, Symmetry
     from .flow import Flow
 
-MOST = 1280  # intervals
-ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
+MOST = 1280  # most mesh intervals
+ENOUGH = 320  # with so many intervals, the mesh is not the reason if Newton's method fails
 
 
 class CycleMesh(Parametrised, ProblemDefaults, ABC):
-    """Values at the nodes of each interval of the mesh, shape (N, m, d), the period (autonomous flows), and the widths of the intervals in units of the period.
+    """Unknowns and mesh of cycles.
+
+    The unknowns are the values at the nodes of each mesh interval (without its last node), shape (N, m, d), the period (autonomous flows
+    only), and the widths of the intervals in units of the period, shape (N,).
 
     Parameters
     ----------
     flow : Flow
     field : Field
     u : ndarray
-        Unknowns to begin with.
+        Unknowns of the start.
     counts : (int, int, int)
-        Intervals; of forced flows, periods of the forcing after which the motion repeats; equal parts of which the mesh consists.
+        Numbers of intervals, of periods of the forcing in one period of the cycle (forced flows), and of equal parts of the mesh.
     sizes : (ndarray of shape (d,), float, float)
-        What counts as large in each coordinate, in the period, and in the parameter.
+        Typical sizes of the states, of the period, and of the parameter.
     """
 
     spectrum = "map"
     flip_kind = "period-doubling"
     trouble = ""
     scales_learned = True
-    chunk = 8  # points after which the mesh is adapted
-    parts_of_refined = 1  # equal ones, into which `halved` divides the mesh
+    chunk = 8  # points of a branch after which the mesh is adapted
+    parts_of_refined = 1  # number of equal parts of the mesh that `halved` makes: 2 after a cycle has come near its own half period
     reference: tuple[np.ndarray, np.ndarray] | None = None
-    """Row of the phase condition that is kept, and the nodes that fulfil it, in units of the scale."""
+    """Row of a fixed phase condition, and nodes that fulfil it, in units of the scale; see `anchor`."""
 
     def __init__(
         self,
@@ -67,11 +70,11 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         self.free_period = 0 if field.forced else 1
         self.states = self.intervals * self.rule.degree * self.node
         self.dimension = self.states + self.free_period + self.intervals
-        self.held = slice(self.states + self.free_period, self.dimension)  # widths
+        self.held = slice(self.states + self.free_period, self.dimension)  # the widths
         self.n_multipliers = self.node - self.free_period
         self.n_margins = 2 * self.free_period + len(flow.events)
         self.sparse: SparseEquations | None = None
-        if field.sparsity is not None:  # the largest multipliers alone
+        if field.sparsity is not None:  # large flow: only the largest multipliers are computed
             self.sparse = SparseEquations(field.sparsity, self.rule, self.intervals)
             self.n_multipliers = min(LEADING, self.n_multipliers)
         self.u0 = np.array(u, dtype=float)
@@ -92,35 +95,35 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
     @property
     @abstractmethod
     def kernels(self) -> Kernels:
-        """Those of :mod:`contvines.flows.kernels`."""
+        """Kernels of :mod:`contvines.flows.kernels`."""
 
     @abstractmethod
     def workspace(self) -> Any:
-        """Arrays for the kernels, a :class:`contvines.flows.work.CycleWork`."""
+        """Return the arrays for the kernels, a :class:`contvines.flows.work.CycleWork`."""
 
     @abstractmethod
     def _symmetries(self) -> list[Symmetry]: ...
 
     @abstractmethod
     def evaluate(self, u: np.ndarray, p: float, work: Any) -> None:
-        """Residual and derivatives into a workspace."""
+        """Evaluate residual and derivatives into a workspace."""
 
     @abstractmethod
     def margins(self, u: np.ndarray, work: Any) -> np.ndarray:
-        """How far a cycle is from where branches end."""
+        """Return the margins: distances from a homoclinic orbit (autonomous flows), then from each event."""
 
     @abstractmethod
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
-        """Whether a cycle asks for more intervals."""
+        """Whether a cycle needs more intervals."""
 
-    # ------------------------------------------------------------------ problems alike
+    # ------------------------------------------------------------------ similar problems
     @property
     def data(self) -> Self:
         """The problem itself."""
         return self
 
     def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Self:
-        """The same cycles with another parameter varying, and with other values of some parameters."""
+        """Return the same cycles with another parameter varying, and with other values of some parameters."""
         other = copy(self)
         other.values = self.values.against(parameter, values)
         other.field = self.field.against(other.values)
@@ -132,63 +135,63 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
     def with_unknowns(
         self, u: np.ndarray, p: float, intervals: int, copies: int, rounds: int | None = None
     ) -> Self:
-        """Cycles with another number of intervals."""
+        """Return the problem of cycles with another number of intervals, and with the start u at p."""
         values = self.values.against(self.parameter, {self.parameter: p})
         counts = intervals, self.rounds if rounds is None else rounds, copies
         sizes = self.node_scale, self.clock, self.parameter_scale
         return type(self)(self.flow, self.field.against(values), u, counts, sizes)
 
     def refined(self) -> Self:
-        """The same cycles with twice as many intervals."""
+        """Return the same cycles with twice as many intervals."""
         u = self.halved(self.u0)
         return self.with_unknowns(u, self.p0, 2 * self.intervals, self.parts_of_refined * self.copies)
 
     # ------------------------------------------------------------------ unknowns
     @property
     def period_place(self) -> int:
-        """Which of the unknowns is the period."""
+        """Index of the period among the unknowns."""
         return self.states
 
     def curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values at the nodes (N, m, d), widths (N,)."""
+        """Split unknowns into values at the nodes (N, m, d) and widths (N,)."""
         return u[: self.states].reshape(self.intervals, self.rule.degree, self.node), u[self.held]
 
     def parts(self, u: np.ndarray, p: float) -> tuple[np.ndarray, float, np.ndarray]:
-        """Values at the nodes (N, m, d), period, widths (N,)."""
+        """Split unknowns into values at the nodes (N, m, d), period and widths (N,)."""
         x, widths = self.curve(u)
         period = float(u[self.states]) if self.free_period else self.rounds * self.field.length_of_period(p)
         return x, period, widths
 
     def joined(self, x: np.ndarray, period: float, widths: np.ndarray) -> np.ndarray:
-        """Unknowns from their parts."""
+        """Join values at the nodes, period and widths to unknowns."""
         own = [period] if self.free_period else []
         return np.concatenate([np.reshape(x, -1), own, widths])
 
     def waiting(self, u: np.ndarray, p: float, period: float) -> np.ndarray:
-        """A guess of a nearly homoclinic cycle of another period: it stays longer, or less long, where it is slowest."""
-        x, now, widths = self.parts(u, p)
+        """Return a guess for a nearly homoclinic cycle of another period: the time in the slowest interval is changed."""
+        x, old, widths = self.parts(u, p)
         speeds = np.linalg.norm(self.field(x[:, 0], p) / self.node_scale, axis=1)
-        slowest, times = int(np.argmin(speeds + np.roll(speeds, -1))), now * widths
-        times[slowest] = max(times[slowest] + period - now, 0.1 * times[slowest])
+        slowest, times = int(np.argmin(speeds + np.roll(speeds, -1))), old * widths
+        times[slowest] = max(times[slowest] + period - old, 0.1 * times[slowest])
         return self.joined(x, period, times / times.sum())
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
-        """Typical sizes of unknowns and parameter."""
+        """Typical sizes of unknowns and parameter, shape (dimension + 1,)."""
         return np.append(self.column_scale, self.parameter_scale)
 
     def amplitude(self, direction: np.ndarray) -> float:
-        """Root mean square of a direction over the nodes."""
+        """Length of a direction for normal forms: root mean square over the nodes."""
         x = direction[: self.states].reshape(-1, self.node)
         return float(np.sqrt((x**2).sum(axis=1).mean()))
 
     def sizes(self, x: np.ndarray) -> np.ndarray:
-        """Of a cycle in each coordinate, what stands still a little more than nothing."""
+        """Range of a cycle in each coordinate, with a small positive minimum for coordinates that are constant."""
         ranges, s = np.ptp(x.reshape(-1, self.node), axis=0), self.flow.settings
         least = s.same * (ranges / self.node_scale).max() + s.solved
         return np.maximum(ranges, least * self.node_scale)
 
     def terms(self, u: np.ndarray) -> np.ndarray:
-        """Sizes of the terms of the equations: states far from the origin cancel in their slopes, and in the phase, and round as they do."""
+        """Sizes of the terms of the equations; if states are far from the origin, their large terms cancel in the derivatives and in the phase condition."""
         states = u[: self.states].reshape(-1, self.node)
         sizes = np.maximum(self.node_scale, np.abs(states).max(axis=0))
         found = self.row_scale.copy()
@@ -196,31 +199,31 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         found[self.states : self.states + self.free_period] *= (sizes / self.node_scale).max()
         return found
 
-    # ------------------------------------------------------------------ a mesh that moves along
+    # ------------------------------------------------------------------ moving mesh
     @property
     def _phase_row(self) -> np.ndarray | None:
         return None if self.reference is None else self.reference[0].reshape(-1)
 
     def steer(self, u: np.ndarray, tangent: np.ndarray) -> None:
-        """Let the mesh move along with the curve, and keep the phase; see :mod:`contvines.flows.moving_mesh`."""
+        """Change a tangent in place so that the mesh moves with the curve, and the phase is kept; see :mod:`contvines.flows.moving_mesh`."""
         self.moving.steer(u, tangent, self._phase_row)
 
     def stand(self, u: np.ndarray, tangent: np.ndarray) -> None:
-        """Let the mesh stand where it is, and keep the phase."""
+        """Change a tangent in place so that the mesh is fixed, and the phase is kept."""
         self.moving.stand(u, tangent, self._phase_row)
 
     # ------------------------------------------------------------------ other meshes
     def estimated_error(self, u: np.ndarray) -> float:
-        """Estimated largest error of the curve between the mesh points, in units of the size of the cycle."""
+        """Estimate the largest error of the curve between the mesh points, relative to the size of the cycle."""
         x, widths = self.curve(u)
         return mesh.error(self.rule, widths, x, self.sizes(x))
 
     def lags(self, u: np.ndarray) -> bool:
-        """Whether the error of a cycle is too large on its own mesh."""
+        """Whether the error of a cycle on its own mesh is too large."""
         return self.estimated_error(u) > self.flow.error
 
     def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
-        """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
+        """Return the interpolation of unknowns, or directions, to a mesh with equal shares of the error; None if the mesh is good."""
         x, widths = self.curve(u)
         sizes = self.sizes(x)
         if (sizes / self.node_scale).max() < self.flow.settings.same:
@@ -229,11 +232,11 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         return None if new is None else self._onto(widths, new)
 
     def carried(self, u: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Unknowns as they read on the mesh of others."""
+        """Return unknowns interpolated to the mesh of others."""
         return self._onto(u[self.held], other[self.held])(u)
 
     def _onto(self, widths: np.ndarray, new: np.ndarray) -> Callable[..., np.ndarray]:
-        """How unknowns, and directions of unknowns, read on another mesh."""
+        """Interpolation of unknowns, or directions, to a mesh with other widths."""
         read = mesh.reading(self.rule, widths, mesh.node_places(self.rule, new))
 
         def image(v: np.ndarray, direction: bool = False) -> np.ndarray:
@@ -244,9 +247,9 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         return image
 
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
-        """Unknowns, or a direction of unknowns, with twice as many intervals: every one halved, or the whole mesh twice in each period.
+        """Return unknowns, or a direction, on a mesh with twice as many intervals: every interval halved, or two equal halves (`parts_of_refined`).
 
-        Where every interval is halved, rows of an array are unknowns, too.
+        If every interval is halved, u may be an array with unknowns as rows.
         """
         if self.parts_of_refined == 2:
             own = (self.u0 if direction else u)[self.held]
@@ -258,9 +261,9 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         return np.concatenate([finer, u[..., self.states : end], widths], axis=-1)
 
     def asymmetry(self, u: np.ndarray) -> float:
-        """How far a cycle is from itself half a period later, or, on a mesh with other halves, from its mirror image then, relative to its size.
+        """Distance of a cycle from itself half a period later, relative to its size; with unequal halves of the mesh also from its mirror image then.
 
-        0 of one that runs twice through a shorter one, or is its own mirror image.
+        It is 0 for a cycle that runs twice through a shorter one, or that is its own mirror image.
         """
         x, widths = self.curve(u)
         later = mesh.evaluate(self.rule, widths, x, mesh.node_places(self.rule, widths) + 0.5)

@@ -1,4 +1,4 @@
-"""CycleRelatives: mirror images, doubled and halved cycles, what tells that two cycles are one, and where branches of cycles end."""
+"""CycleRelatives: symmetries of cycles, cycles of twice and of half the period, identity of cycles, and margins at which branches end."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
     from ..problems.protocol import BorderPoint
 
-MEANS = 20  # per state, at most: ten intervals of degree two have as many values
-NEARLY = 10.0  # times the distance at which a cycle is homoclinic: so near it must be in each coordinate
+MEANS = 20  # most means per state in `canonical`: as many as values on a mesh of ten intervals of degree two
+NEARLY = 10.0  # multiple of the homoclinic distance at which the distance in each coordinate is computed, too
 
 
 class CycleRelatives(CycleMesh):
-    """Symmetries of cycles, those of half and of twice the period, their identity; how far they are from being homoclinic, and from events that stop them."""
+    """Symmetries and identity of cycles, cycles of half and of twice the period, and the distances from homoclinic orbits and events."""
 
     def _symmetries(self) -> list[Symmetry]:
         found, mirror = [], self.flow.mirror
@@ -47,7 +47,7 @@ class CycleRelatives(CycleMesh):
         return found
 
     def _kind_at(self, u: np.ndarray) -> str:
-        """Whether a cycle that is equal to itself half a period later is an equilibrium or a cycle of half the period."""
+        """Kind of a cycle that is equal to itself half a period later: "hopf" (an equilibrium) or "period-doubling" (a cycle of half the period)."""
         y = u[: self.states].reshape(-1, self.node) / self.node_scale
         return "hopf" if np.ptp(y, axis=0).max() < self.flow.settings.at_rest else "period-doubling"
 
@@ -64,7 +64,7 @@ class CycleRelatives(CycleMesh):
     def root(
         self, u: np.ndarray, p: float, loose: float | None = None
     ) -> tuple[AlgebraicProblem | Self, np.ndarray] | None:
-        """The equilibrium, or the cycle of half the period, that a solution only repeats; else None."""
+        """Return the equilibrium, or the cycle of half the period, that a solution repeats, with its problem; else None."""
         x, widths = self.curve(u)
         y = x.reshape(-1, self.node)
         near = self.flow.settings.same if loose is None else loose
@@ -82,19 +82,19 @@ class CycleRelatives(CycleMesh):
         return self.with_unknowns(shorter, p, half, self.copies // 2, rounds), shorter
 
     def center(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """The mean state, and the mean square of the distance from it, in units of the scale."""
+        """Return the mean state, and the mean square distance from it in units of the scale."""
         x = u[: self.states].reshape(-1, self.node)
         mean = x.mean(axis=0)
         return mean, float((((x - mean) / self.node_scale) ** 2).mean())
 
     def resting(self, u: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """An equilibrium as a cycle with the period and the mesh of another."""
+        """Return an equilibrium as unknowns of a cycle, with the period and mesh of u."""
         return np.concatenate([np.tile(x, self.states // self.node), u[self.states :]])
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
-        """At a period doubling: the cycle of twice the period."""
+        """Return, at a period doubling, the cycle as one of twice the period."""
         if kind != "period-doubling":
             return []
 
@@ -108,9 +108,10 @@ class CycleRelatives(CycleMesh):
         return [Embedding(problem, doubled, direction, kind)]
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
-        """Means over the shortest period of powers and products of the coordinates, the same for all meshes and phases; of mirror images the smaller.
+        """Return a key, and means over the shortest period of powers and products of the coordinates; of two mirror images those that come first.
 
-        Of many states the first ones tell cycles apart: no more than there are values at the nodes of any mesh, whose scales they have.
+        The means do not depend on mesh and phase. For flows with many states only the first means are used, no more than there are values at
+        the nodes of any mesh, since they have the scales of these values.
         """
         shorter = self.root(u, p)
         if shorter is not None:
@@ -131,7 +132,7 @@ class CycleRelatives(CycleMesh):
         mean = share @ points
         rest = points - mean
         size = np.sqrt(share @ rest**2)
-        moves = size > self.flow.settings.same * size.max()  # what stands still has no shape
+        moves = size > self.flow.settings.same * size.max()  # a constant coordinate has no shape
         unit = np.where(moves, rest / np.where(moves, size, 1.0), 0.0)
         second, area, third = (
             np.einsum("i,ia,ib->ab", weights, one, other)
@@ -143,22 +144,22 @@ class CycleRelatives(CycleMesh):
 
     # ------------------------------------------------------------------ homoclinic orbits
     def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
-        """How far the cycle stays away from equilibria, relative to its size, and its period from infinity: log10 of the part that is left; then the events."""
+        """Return the margins: log10 of the distance from an equilibrium and of the remaining growth of the period (autonomous flows), each relative to its limit; then the smallest values of the events."""
         own = self._from_homoclinic(u, work) if self.free_period else np.zeros(0)
         return np.append(own, self._closest(u, work.along[1])[0]) if len(self.flow.events) else own
 
     def margin_kind(self, j: int) -> str:
-        """A cycle that comes near to an equilibrium ends as a homoclinic orbit; else it touches an event."""
+        """Return the kind of border of margin j: "homoclinic", or that of an event."""
         own = 2 * self.free_period
         return "homoclinic" if j < own else self.flow.border_kind(j - own)
 
     def event_at(self, point: BorderPoint) -> int:
-        """The number of the event that is touched at a border; negative where the period grows without bound."""
+        """Return the index of the event that is touched at a border; negative if the period grows without bound there."""
         return margin_of(point) - 2 * self.free_period
 
     def _from_homoclinic(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
         x, s = u[: self.states].reshape(-1, self.node), self.flow.settings
-        each = np.ascontiguousarray(x.T)  # sums over rows are ten times as fast
+        each = np.ascontiguousarray(x.T)  # reductions along rows are ten times as fast
         size = float(((each.max(axis=1) - each.min(axis=1)) / self.node_scale).max())
         short = math.log10(s.longest * self.clock / max(float(u[self.states]), TINY))
         closeness = work.distance_to_rest()
@@ -169,9 +170,10 @@ class CycleRelatives(CycleMesh):
         return np.array([math.log10(max(closeness / size, TINY) / s.homoclinic), short])
 
     def _from_equilibrium(self, x: np.ndarray, work: CycleWork) -> float:
-        """The distance from the equilibrium to which the shortest Newton step leads, relative to the size of the cycle in each coordinate; infinite where it leads to none.
+        """Distance from the equilibrium to which the shortest Newton step leads, relative to the size of the cycle in each coordinate; infinite if there is none.
 
-        Coordinates of fast and slow motions differ in size, and where a slow manifold folds, a step of Newton's method is short and no equilibrium near.
+        The Newton step alone is not enough: coordinates of fast and slow motions differ in size, and near the fold of a slow manifold the step is short
+        although there is no equilibrium nearby.
         """
         _, p, jacobian, f = work.along
         try:
@@ -184,8 +186,10 @@ class CycleRelatives(CycleMesh):
         return math.inf if place is None else float(np.linalg.norm((place - start) / sizes))
 
     def from_rest(self, u: np.ndarray, p: float) -> float:
-        """How near the cycle comes to an equilibrium, relative to its size in each direction: the same in all coordinates of the states, as beside Bogdanov-Takens
-        points, where cycles are flat."""
+        """Return the distance of the cycle from an equilibrium, relative to its size along each principal axis.
+
+        It does not depend on the coordinates, unlike the margin; cycles near Bogdanov-Takens points are flat.
+        """
         s, work = self.flow.settings, workspace(self)
         self.evaluate(u, p, work)
         if self.sparse is not None:
@@ -197,13 +201,13 @@ class CycleRelatives(CycleMesh):
         return max(distance_to_rest(work.along[2] @ back, work.along[3]), TINY)
 
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
-        """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2 to first order, taken twice; of a saddle less is left."""
+        """Estimate the distance of the parameter from its limit p* at infinite period: T |dp/dT|, twice the distance if p - p* is proportional to 1 / T^2 (saddle-node); near a saddle it is smaller."""
         change = abs(float(tangent[self.states]))
         return float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
 
     # ------------------------------------------------------------------ events
     def _closest(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
-        """The smallest value of each event along the cycle, and where."""
+        """The smallest value of each event along the cycle, and its place in units of the period; NaN if an event fails."""
         x, period, widths = self.parts(u, p)
         count = FINER * self.rule.degree
         edges = mesh.places(widths, np.arange(count) / count)
@@ -216,14 +220,14 @@ class CycleRelatives(CycleMesh):
             return nothing, nothing
 
     def crossed(self, u: np.ndarray, p: float) -> str | None:
-        """The name of an event that the cycle crosses, by more than the curve may be off; None if there is none."""
+        """Return the name of an event that the cycle crosses by more than the error of the curve; None if there is none."""
         for k, name in enumerate(self.flow.events.names):
             if self._closest(u, p)[0][k] < -self._missed(u, p, k):
                 return name
         return None
 
     def _missed(self, u: np.ndarray, p: float, k: int) -> float:
-        """By how much the smallest value of an event may be off: the curve is known less well between the mesh points than there."""
+        """Error of the smallest value of an event, from the error of the curve between the mesh points."""
         (x, when), sizes = self.touching(u, p, k), self.sizes(self.curve(u)[0])
         touch = self.flow.settings.touch
         moved = x + touch * np.concatenate([np.diag(sizes), -np.diag(sizes)])
@@ -231,13 +235,13 @@ class CycleRelatives(CycleMesh):
         return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * touch))
 
     def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:
-        """The state in which the cycle comes closest to event k, and when."""
+        """Return the state in which the cycle comes closest to event k, and its time."""
         x, period, widths = self.parts(u, p)
         place = self._closest(u, p)[1][k : k + 1]
         return mesh.evaluate(self.rule, widths, x, place)[0], float(place[0] * period)
 
     def touch_error(self, point: BorderPoint) -> float:
-        """By how much the parameter at which a cycle touches an event may be off."""
+        """Estimate the error of the parameter at which a cycle touches an event."""
         k, along = self.event_at(point), point.tangent
         missed = self._missed(point.u, float(point.value), k)
         step = self.flow.settings.touch / max(float(np.abs(along[:-1] / self.column_scale).max()), TINY)

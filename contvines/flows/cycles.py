@@ -27,18 +27,21 @@ if TYPE_CHECKING:
     from ..problems.abilities import Population
     from ..problems.protocol import BorderPoint, Seed
 
-CAUTION = 10.0  # times the estimated error of values on the mesh
+CAUTION = 10.0  # safety factor of the estimated error of values at the mesh points
 
 
 class CycleProblem(CycleRelatives):
     """Cycles of x' = f(x, p), or of x' = f(x, p, t) with a given period in t.
 
-    Unknowns are those of :class:`contvines.flows.cycle_mesh.CycleMesh`; widths of intervals stay as they are while equations are solved. Equations are those at the Gauss
-    points, the phase condition (corrections are orthogonal to the direction of motion, in the mean over the cycle), and one for each width.
+    The unknowns are those of :class:`contvines.flows.cycle_mesh.CycleMesh`. The equations are
+
+    - the collocation equations at the Gauss points,
+    - the phase condition (autonomous flows): corrections are orthogonal to the velocity, on average over the cycle, and
+    - one for each width of the mesh, which keeps it unchanged during a correction.
     """
 
     def direction(self, u: np.ndarray, p: float, side: float) -> np.ndarray:
-        """The direction in which the branch of a cycle leads, the parameter growing or, where `side` is negative, falling."""
+        """Return the tangent of the branch at a cycle, with growing or, if `side` is negative, falling parameter."""
         border, step, tangent = np.zeros((3, self.dimension + 1))
         border[-1], work = 1.0, self.workspace()
         linearise(self, u, p, work)
@@ -48,20 +51,20 @@ class CycleProblem(CycleRelatives):
     # ------------------------------------------------------------------ equations
     @property
     def kernels(self) -> Kernels:
-        """Those of loci, too, unless derivatives are sparse."""
+        """Kernels, with those for loci unless the derivatives are sparse."""
         return KERNELS if self.sparse is None else SPARSE
 
     def workspace(self) -> CycleWork:
-        """Arrays for the kernels."""
+        """Return the arrays for the kernels."""
         return workspace(self)
 
     def evaluate(self, u: np.ndarray, p: float, work: CycleWork) -> None:
-        """Residual and derivatives into a workspace.
+        """Evaluate residual and derivatives into a workspace.
 
         Raises
         ------
         NotEvaluable
-            If the right-hand side fails, or the period is not positive.
+            If the right-hand side fails, or the period or a width is not positive.
         """
         x, period, widths = self.parts(u, p)
         if not period > 0.0:
@@ -79,7 +82,7 @@ class CycleProblem(CycleRelatives):
         work.along, work.steps = (np.array(x[:, 0]), p, jacobian, f), period * widths
         if self.field.forced:
             return
-        if not size > 0.0:  # an equilibrium, which moves in no direction
+        if not size > 0.0:  # an equilibrium: the velocity is zero, and so is the row of the phase condition
             work.phase[0, 0] = 1.0
         if self.reference is not None:
             work.phase[:], origin = self.reference
@@ -89,7 +92,7 @@ class CycleProblem(CycleRelatives):
     def _evaluated(
         self, x: np.ndarray, widths: np.ndarray, period: float, p: float, work: CycleWork
     ) -> tuple[float, np.ndarray, np.ndarray]:
-        """Residual and derivatives by functions in Python: the length of the row of the phase condition, f and df/dx at the Gauss points."""
+        """Evaluate residual and derivatives by functions in Python; return the length of the phase condition's row, f and df/dx at the Gauss points."""
         r, field, slope, times, along = self.rule, self.field, None, None, None
         points = work.at_gauss_points(x)
         if field.forced:
@@ -98,7 +101,7 @@ class CycleProblem(CycleRelatives):
             f = field(points, p, times)
 
             def moved(q: complex) -> np.ndarray:
-                """Period times width times f as a function of the parameter alone."""
+                """Period times width times f as a function of the parameter at fixed states."""
                 forcing = field.length_of_period(q)
                 rates = field(points, q, forcing * places).reshape(self.intervals, r.degree, self.node)
                 return self.rounds * forcing * widths[:, None, None] * rates
@@ -115,9 +118,9 @@ class CycleProblem(CycleRelatives):
         return size, f, jacobian
 
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
-        """Keep the phase of a cycle for those that follow; None: corrections alone are orthogonal to the motion.
+        """Fix the phase condition of the following cycles to the phase of u; with None, each correction is orthogonal to the cycle's own velocity.
 
-        Where the phase is not kept, predictions from several points of a branch would let it drift.
+        Without a fixed phase, predictions from several points of a branch let the phase drift.
         """
         self.reference = None
         if u is None or not self.free_period:
@@ -127,17 +130,22 @@ class CycleProblem(CycleRelatives):
         self.reference = mesh.phase_row(self.rule, widths, rates.reshape(x.shape))[0], x / self.node_scale
 
     def in_phase(self, u: np.ndarray) -> bool:
-        """Whether a cycle is enough like the one whose phase is kept."""
+        """Whether a cycle is similar enough to the one whose phase is fixed."""
         if self.reference is None:
             return not self.free_period
         x, widths = self.curve(u)
         alike = mesh.alike(self.rule, widths, x / self.node_scale, self.reference[1])
         return alike > self.flow.settings.in_phase
 
-    # ------------------------------------------------------------------ when there are too few intervals
+    # ------------------------------------------------------------------ need for more intervals
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
-        """Whether a cycle asks for more intervals: its error is too large on a mesh that suits it, too, Newton's method fails beside it, as at canards on a
-        coarse mesh, it becomes one of half the period, or its own mirror image, which takes a mesh with equal halves to tell, or a decay gets lost."""
+        """Whether a cycle needs more intervals, for one of these reasons:
+
+        - Newton's method fails next to it (`stuck`), as at canards on a coarse mesh;
+        - it approaches a cycle of half the period, or its own mirror image: this needs a mesh with equal halves;
+        - its error is too large even on an adapted mesh;
+        - collocation loses a decay, see `_lost_decay`.
+        """
         if stuck:
             return self.intervals < ENOUGH * self.copies
         if self.free_period and self.copies % 2 and self.asymmetry(u) < self.flow.settings.halving:
@@ -150,11 +158,11 @@ class CycleProblem(CycleRelatives):
         return self.lags(u) and (image is None or self.lags(image(u)))
 
     def _lost_decay(self, u: np.ndarray, p: float) -> bool:
-        """Whether motions beside the cycle that decay (or grow) by more than a factor e in a period do so by less as collocation has it.
+        """Whether perturbations that decay (or grow) by more than a factor e in a period decay by less in the collocation equations.
 
-        Along an eigenvector with h lambda = z collocation takes R(z) for exp(z), which tends to 1 in size as z grows: see :meth:`Rule.stability`.
-        That is harmless as long as an interval resolves the decay. Where none does, as on cycles that go round slower and slower, a multiplier
-        that is nearly zero seems to come near to 1, and the equations are singular where nothing bifurcates.
+        Along an eigenvector with h lambda = z, collocation replaces exp(z) by R(z), whose magnitude tends to 1 for large |z|: see
+        :meth:`Rule.stability`. This is harmless if at least one interval resolves the decay. If none does, as on cycles that become slower and
+        slower, a multiplier near zero seems to approach 1, and the equations become singular without a bifurcation.
         """
         if self.sparse is not None:
             return False
@@ -176,9 +184,9 @@ class CycleProblem(CycleRelatives):
         found, true = (np.take_along_axis(a, least, axis=1).sum() for a in (own, np.abs(z.real)))
         return bool(found < 1.0 < true)
 
-    # ------------------------------------------------------------------ what is known of a cycle
+    # ------------------------------------------------------------------ accuracy and normal forms
     def accuracy(self, u: np.ndarray, p: float) -> float:
-        """Relative accuracy of parameter, period and mesh points: of order 2 m where the curve between them is known to order m + 1."""
+        """Relative accuracy of parameter, period and mesh points: of order 2 m, while the curve between mesh points has order m + 1."""
         m, work = self.rule.degree, self.workspace()
         error, missed = min(self.estimated_error(u), 1.0), 0.0
         if linearise(self, u, p, work) < np.inf:
@@ -187,15 +195,15 @@ class CycleProblem(CycleRelatives):
             except np.linalg.LinAlgError:
                 missed = 0.0
         own = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
-        # the trivial multiplier tells more, unless its system is singular, as of nearly homoclinic orbits
+        # the error of the trivial multiplier is a better estimate, unless its system is singular, as for nearly homoclinic orbits
         return max(own, missed) if missed < self.flow.settings.sensible else own
 
     def uncertainty(self) -> float:
-        """Relative accuracy of the equations: of rounding."""
+        """Relative accuracy of the equations: rounding only."""
         return ROUNDED * 4
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
-        """Why a branch ends where Newton's method fails."""
+        """Return the reason why Newton's method fails at the end of a branch."""
         if not evaluable:
             return self.trouble
         error = self.estimated_error(u)
@@ -209,8 +217,19 @@ class CycleProblem(CycleRelatives):
         multiplier: complex = -1.0,
         along: np.ndarray | None = None,
     ) -> tuple[float, float] | None:
-        """The coefficient at a fold (of the sign along a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of
-        its terms; None where there is none. See :mod:`contvines.flows.forms`."""
+        """Return the normal form coefficient and the sum of the magnitudes of its terms; None if they cannot be computed. See :mod:`contvines.flows.forms`.
+
+        Parameters
+        ----------
+        kind : str
+            Kind of the special point: "neimark-sacker", "period-doubling", or another one for a pitchfork.
+        u, p
+            The cycle.
+        multiplier : complex
+            Critical multiplier of a Neimark-Sacker point.
+        along : ndarray, optional
+            Given for a fold: direction of the unknowns that determines the sign.
+        """
         if self.states > LARGEST or self.sparse is not None:
             return None
         try:
@@ -232,30 +251,30 @@ class CycleProblem(CycleRelatives):
 
     # ------------------------------------------------------------------ borders
     def beyond(self, point: BorderPoint) -> list[Seed]:
-        """Nothing goes on from a homoclinic orbit; at an event the flow says what does."""
+        """Return the motions beyond an event, as the flow has them; none beyond a homoclinic orbit."""
         k = self.event_at(point)
         return [] if k < 0 else self.flow.beyond(self, point, k)
 
     def dead_end(self, point: BorderPoint) -> str:
-        """What the cycle becomes as its period grows without bound, such as a homoclinic orbit; or the event that stops the motion."""
+        """Return a sentence on the limit of infinite period, such as a homoclinic orbit, or on the event that stops the motion."""
         k = self.event_at(point)
         if k < 0:
             return str(infinite_period(self, point))
         return self.flow.dead_end(k, *self.touching(point.u, point.value, k))
 
-    # ------------------------------------------------------------------ what people see of a cycle, and what attracts
+    # ------------------------------------------------------------------ measures, orbits, attractors
     @property
     def default_measure(self) -> str:
-        """The largest value of the first state."""
+        """Largest value of the first state."""
         return next(iter(self.flow.of_states))
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Largest, smallest and mean value of each coordinate, the root mean square of the state, the period."""
+        """Names: root mean square of the state ("norm"), period, largest, smallest and mean value of each state, and the flow's own measures."""
         return ("norm", "period", *self.flow.of_states, *self.flow.own_measures)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures for an array of solutions."""
+        """Return the named measures, each of shape (m,), of m cycles."""
         u = np.atleast_2d(u)
         p = np.broadcast_to(np.asarray(p, dtype=float).reshape(-1), (len(u),))
         for name in names:
@@ -265,14 +284,14 @@ class CycleProblem(CycleRelatives):
         return {name: np.array([values[i] for values in found]) for i, name in enumerate(names)}
 
     def orbit(self, u: np.ndarray, p: float) -> CycleOrbit:
-        """The cycle; solved for where the unknowns are those of a coarser mesh."""
+        """Return the cycle; if the unknowns do not solve the equations (they come from a coarser mesh), Newton's method is applied first."""
         u, p = np.array(u, dtype=float), float(p)
         unsolved = linearise(self, u, p, self.workspace()) > self.flow.settings.rounded
         found = solved(self, u, p) if unsolved else None
         return CycleOrbit(self, u if found is None else found, p)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
-        """Largest distance of a simulation from the cycle; see :meth:`CycleOrbit.replay`."""
+        """Return the largest distance of a simulation from the cycle; see :meth:`CycleOrbit.replay`."""
         return self.orbit(u, p).replay()
 
     def simulated_attractors(self, p: float, starts: int = 16) -> list[dict[str, Any]]:
@@ -286,24 +305,24 @@ class CycleProblem(CycleRelatives):
     def population(
         self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None, **values: float
     ) -> Population:
-        """Starts round this cycle, and what they settle on."""
+        """Return a population of starts around this cycle."""
         states = self.u0[: self.states].reshape(-1, self.node)
         return self.flow.population_at({**self.parameters, **values}, over or self.parameter, box, states)
 
     def return_map(self, u: np.ndarray, p: float) -> ReturnMap:
-        """The map of which a cycle is a fixed point."""
+        """Return the return map at a cycle, which is its fixed point."""
         return ReturnMap(self, u, p)
 
     _returns: ReturnMap | None = None
 
     def section(self, p: float) -> FlowSection:
-        """Motions beside the cycle with which the problem begins, once per period."""
+        """Return the section of motions near the problem's first cycle: one step is one period."""
         if self._returns is None:
             self._returns = ReturnMap(self, self.u0, self.p0)
         return FlowSection(self._returns, p)
 
     def describe(self) -> dict[str, Any]:
-        """Name, discretisation, and how to build the problem again."""
+        """Return name, discretisation, and the data from which the problem is rebuilt."""
         return {
             **self.flow.describe(),
             **self.flow.of_cycles,

@@ -1,9 +1,9 @@
-"""Orthogonal elimination of collocation equations: intervals condensed, then a block-cyclic system, and its multipliers.
+"""Orthogonal elimination of collocation equations: condensation of the intervals, a block-cyclic system, and its multipliers.
 
-All intervals are handled at once, as stacks of small matrices. The unknowns inside an interval are eliminated by QR factorisation,
-then every other mesh point, again by QR factorisations of two neighbouring rows of blocks, until one block row is left
-(S. J. Wright, SIAM J. Sci. Stat. Comput. 13, 1992: stable where elimination without orthogonal matrices is not). A few more
-columns (period, parameter) and rows (phase, border) go along.
+All intervals are processed at once, as stacks of small matrices. First the unknowns inside each interval are eliminated by QR
+factorisation. Then every other mesh point is eliminated, by QR factorisations of pairs of neighbouring block rows, until one block row
+is left (S. J. Wright, SIAM J. Sci. Stat. Comput. 13, 1992; Gaussian elimination can be unstable here). A few further columns (period,
+parameter) and rows (phase, border) take part.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from ..core.multipliers.periodic_schur import multipliers
 
 
 class Condensed(NamedTuple):
-    """Equations between neighbouring mesh points: ``left[i] x_i + right[i] x_(i + 1) + columns[i] e = 0``.
+    """Equations between neighbouring mesh points: ``left[i] x_i + right[i] x_(i + 1) + columns[i] e = 0``, with shared unknowns e.
 
-    The unknowns inside are ``-(maps @ (x_i, x_(i + 1), e))``; ``sign`` is that of the determinant of the eliminated part.
+    The unknowns inside the intervals are ``-(maps @ (x_i, x_(i + 1), e))``; ``sign`` is the sign of the determinant of the eliminated part.
     """
 
     left: np.ndarray
@@ -40,7 +40,7 @@ def condense(blocks: np.ndarray, columns: np.ndarray, d: int) -> Condensed:
     blocks : ndarray, shape (N, m d, (m + 1) d)
         Derivatives of the collocation equations by the values at the nodes of their interval.
     columns : ndarray, shape (N, m d, k)
-        Of the shared unknowns, right-hand sides (with the opposite sign) among them.
+        Columns of the shared unknowns, then right-hand sides with the opposite sign.
     d : int
     """
     whole = np.concatenate([blocks[:, :, :d], blocks[:, :, -d:], columns], axis=2)
@@ -49,7 +49,7 @@ def condense(blocks: np.ndarray, columns: np.ndarray, d: int) -> Condensed:
 
 
 def _eliminated(front: np.ndarray, whole: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """From equations ``front[i] y_i + whole[i] z_i = 0`` the maps, ``y_i = -maps[i] z_i``, what is left of z alone, and the sign of the determinant of the part that is solved for y."""
+    """Eliminate y from ``front[i] y_i + whole[i] z_i = 0``: return the maps of ``y_i = -maps[i] z_i``, the remaining equations of z, and the sign of the determinant of the eliminated part."""
     k = front.shape[2]
     q, r = np.linalg.qr(front, mode="complete")
     turned = np.matmul(q.transpose(0, 2, 1), whole)
@@ -57,7 +57,7 @@ def _eliminated(front: np.ndarray, whole: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _sign(q: np.ndarray, r: np.ndarray) -> float:
-    """Sign of the product of the determinants of Q and of the triangle in R."""
+    """Sign of the product of the determinants of Q and of the triangular factor R."""
     odd = np.count_nonzero(np.diagonal(r, axis1=1, axis2=2) < 0.0) + np.count_nonzero(np.linalg.det(q) < 0.0)
     return -1.0 if odd % 2 else 1.0
 
@@ -84,7 +84,7 @@ def solve_cyclic(
     ----------
     left, right : ndarray, shape (N, d, d)
     columns : ndarray, shape (N, d, k + s)
-        Of the k shared unknowns, then s right-hand sides.
+        Columns of the k shared unknowns, then s right-hand sides.
     rows : ndarray, shape (N + 1, k, d)
     foot : ndarray, shape (k, k + s)
     closure : float
@@ -137,7 +137,7 @@ def solve_cyclic(
 
 
 def _solve(matrix: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
-    """Solutions and the sign of the determinant; 0 and solutions large along the null vectors of a singular matrix."""
+    """Solutions and the sign of the determinant; for a singular matrix 0, and solutions that are large along its null vectors."""
     if not np.isfinite(matrix).all():
         return np.full(sides.shape, np.nan), 0.0
     rows = np.abs(matrix).max(axis=1)
@@ -159,14 +159,14 @@ def solve_collocation(
     d: int,
     closure: float = 1.0,
 ) -> Eliminated:
-    """:func:`contvines.core.block_cyclic.eliminate`, or :func:`reference`."""
+    """Solve the bordered collocation equations by the native core (:func:`contvines.core.block_cyclic.eliminate`), or by :func:`reference`."""
     return (eliminate if native() else reference)(blocks, columns, rows, foot, d, closure)
 
 
 def reference(
     blocks: np.ndarray, columns: np.ndarray, rows: np.ndarray, foot: np.ndarray, d: int, closure: float
 ) -> Eliminated:
-    """The same in numpy."""
+    """Solve the bordered collocation equations in numpy, with the arguments and result of the native function."""
     count, k, s = len(blocks), len(foot), foot.shape[1] - len(foot)
     cond = condense(blocks, columns, d)
     passed = np.matmul(rows[:, :, d:], cond.maps)
@@ -182,7 +182,7 @@ def reference(
 
 
 def multipliers_of(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Eigenvalues of the product of the factors ``-right[i]^-1 left[i]``, the last one in front, each with its own relative accuracy.
+    """Return the eigenvalues of the product of ``-right[i]^-1 left[i]``, the last factor leftmost; small ones, too, have full relative accuracy.
 
     Parameters
     ----------

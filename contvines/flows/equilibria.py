@@ -1,4 +1,4 @@
-"""Equilibria of an autonomous flow: an AlgebraicProblem from whose Hopf points cycles leave."""
+"""Equilibria of an autonomous flow: an AlgebraicProblem with branches of cycles at its Hopf points."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from .flow import Flow
 
 
-FIRST = 20  # intervals of a cycle that has just been born
+FIRST = 20  # mesh intervals of the first cycles at a Hopf point
 
 
 class Equilibria(AlgebraicProblem):
     """Equilibria of the autonomous flow x' = f(x, p)."""
 
-    mixed_rows = False  # f(R x) = R f(x), as cycles have it
+    mixed_rows = False  # a mirror must fulfil f(R x) = R f(x), as cycles need it
 
     def __init__(self, flow: Flow, params: float | Mapping[str, float], parameter: str) -> None:
         self.flow, given = flow, flow.given
@@ -48,21 +48,21 @@ class Equilibria(AlgebraicProblem):
 
     @property
     def default_measure(self) -> str:
-        """The first state, as it is called on cycles."""
+        """Largest value of the first state: equal to that state, under its name for cycles."""
         return next(iter(self.flow.of_states))
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Norm and coordinates; what is measured on cycles has the values of a cycle that stands still."""
+        """Norm and coordinates, and the measures of cycles, evaluated for a cycle at rest."""
         flow = self.flow
         return (*super().measure_names, *flow.states, *flow.of_states, "period", *flow.own_measures)
 
     def unknown_name(self, i: int) -> str:
-        """The state."""
+        """Return the name of state i."""
         return self.flow.states[i]
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures for an array of solutions."""
+        """Return the named measures, each of shape (m,), of m equilibria."""
         flow, states = self.flow, np.atleast_2d(u)
         places = {name: j for j, name in enumerate(flow.states)} | {
             name: j for name, (_, j) in flow.of_states.items()
@@ -84,7 +84,7 @@ class Equilibria(AlgebraicProblem):
 
     # ------------------------------------------------------------------ events that stop
     def margins(self, u: np.ndarray, p: float) -> np.ndarray:
-        """The events, positive where motions are."""
+        """Return the event functions, positive on the side of the motions; NaN if one cannot be evaluated."""
         try:
             return self.flow.events(u[None, : self.node], self.values.at(p))[0]
         except NotEvaluable:
@@ -103,14 +103,14 @@ class Equilibria(AlgebraicProblem):
         return self.flow.dead_end(margin_of(point), point.u[: self.node])
 
     def _matrix(self, u: np.ndarray, p: float) -> np.ndarray | None:
-        """df/dx written out; None where it is an operator."""
+        """df/dx as an array; None if it is a LinearOperator."""
         matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
         if isinstance(matrix, np.ndarray | Operator):
             return matrix if isinstance(matrix, np.ndarray) else None
         return np.asarray(matrix.toarray())
 
     def orbit(self, u: np.ndarray, p: float) -> Equilibrium:
-        """The equilibrium, with its eigenvalues."""
+        """Return the equilibrium with its eigenvalues."""
         x, matrix = np.array(u, dtype=float)[: self.node], self._matrix(u, p)
         values = np.zeros(0) if matrix is None else np.linalg.eigvals(matrix)
         states = dict(zip(self.flow.states, x.tolist(), strict=True))
@@ -120,7 +120,7 @@ class Equilibria(AlgebraicProblem):
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
-        """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows; of each pair where two are critical."""
+        """Return, at a Hopf point, the cycles that are born there, with the direction of growing amplitude; one for each critical pair of eigenvalues."""
         if kind != "hopf" or (matrix := self._matrix(u, p)) is None:
             return []
         values, vectors = (np.asarray(part, dtype=np.complex128) for part in np.linalg.eig(matrix))
@@ -145,25 +145,36 @@ class Equilibria(AlgebraicProblem):
     def population(
         self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None, **values: float
     ) -> Population:
-        """Starts round the flow's start, and what they settle on."""
+        """Return a population of starts around the flow's start."""
         return self.flow.population_at({**self.values.values, **values}, over or self.parameter, box)
 
     def describe(self) -> dict[str, Any]:
-        """Name, start, and how to build the problem again."""
+        """Return name, start, and the data from which the problem is rebuilt."""
         about = super().describe()
         about["factory"] = self.flow.rebuilt_by(bool(about.get("factory")))
         return {**about, "word": "equilibrium", "flow": self.flow.described()}
 
 
 def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.ndarray) -> Embedding:
-    """The problem of the cycles that are born at a Hopf point, the equilibrium as a cycle, and the direction of the cycles."""
+    """Return the problem of the cycles that are born at a Hopf point, the equilibrium as a cycle of it, and the direction of growing amplitude.
+
+    Parameters
+    ----------
+    problem : Equilibria
+    u, p
+        The Hopf point.
+    omega : float
+        Imaginary part of the critical eigenvalue.
+    q : ndarray of complex, shape (d,)
+        Its eigenvector.
+    """
     flow, d, scales = problem.flow, problem.node, problem.scales
     scale, unit = (np.ones(d), 1.0) if scales is None else (scales.unknowns[:d], scales.parameter)
     field = flow.field.against(problem.values.against(problem.parameter, {problem.parameter: p}))
     widths, period = np.full(FIRST, 1.0 / FIRST), 2.0 * np.pi / omega
     still = np.concatenate([np.tile(u[:d], FIRST * flow.degree), [period], widths])
     cycles = flow.cycles(field, still, (FIRST, 1, 1), (scale, period, unit))
-    assert flow.sizes is not None  # those of the first cycles of all
+    assert flow.sizes is not None  # set by the first call of flow.cycles
     q = q / np.linalg.norm(q / flow.sizes[0])
     angles = 2.0 * np.pi * mesh.node_places(mesh.rule(flow.degree), widths)
     wave = np.real(np.exp(1j * angles)[:, None] * q)
@@ -179,15 +190,15 @@ class Equilibrium(Solution):
     ----------
     parameter : str
     value : float
-        Of the parameter.
+        Value of the parameter.
     u : ndarray, shape (d,)
     states : dict of float
-        The same by name.
+        The states u by name.
     parameters : dict of float
     eigenvalues : ndarray of complex
-        Of the Jacobian; none where it is not at hand as a matrix.
+        Eigenvalues of the Jacobian; empty if the Jacobian is matrix-free.
     marginal : bool
-        Whether it is that of a special point, at which an eigenvalue is on the imaginary axis by definition.
+        Whether it belongs to a special point, at which an eigenvalue lies on the imaginary axis by definition.
     """
 
     states: dict[str, float] = field(default_factory=dict)
@@ -197,18 +208,18 @@ class Equilibrium(Solution):
 
     @property
     def stable(self) -> bool | None:
-        """Whether all eigenvalues have negative real parts; None where they are not known, and at special points, unless one is positive."""
+        """Whether all eigenvalues have negative real parts. None if they are unknown, and at a special point unless one real part is positive."""
         if not self.eigenvalues.size:
             return None
         rates = np.real(self.eigenvalues)
         return attracts(rates, 0.0) if self.marginal else bool((rates < 0.0).all())
 
     def critical(self, near: float = 0.0) -> Equilibrium:
-        """The same equilibrium as that of a special point, where an eigenvalue is on the imaginary axis by definition: the nearest."""
+        """Return the equilibrium as that of a special point: the eigenvalue nearest to the imaginary axis is moved onto it."""
         return replace(self, eigenvalues=onto_axis(self.eigenvalues), marginal=True)
 
     def to_dict(self) -> dict[str, Any]:
-        """The equilibrium as JSON-able dict."""
+        """Return the equilibrium as a JSON-able dict."""
         return {
             "parameter": self.parameter,
             "value": self.value,

@@ -41,16 +41,15 @@ WORDS = {
 }
 TOKEN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?|([a-z_]\w*)")  # a number, or a name
 ALLOWED = re.compile(r"^[\w\s.+\-*/(),]*$")
-DECLARED = re.compile(
-    r"(par\w*|p|number|num|init|i)\s+(?=[a-z_]\w*\s*=)"
-)  # words before name=value, no names themselves
-PASSED = re.compile(r"(aux|set|only|export|options)\s+[^\s=]|[@\"]")
+# keywords before name=value
+DECLARED = re.compile(r"(par\w*|p|number|num|init|i)\s+(?=[a-z_]\w*\s*=)")
+IGNORED = re.compile(r"(aux|set|only|export|options)\s+[^\s=]|[@\"]")
 RANDOM = "what is random has no branches"
 MEMORY = "what depends on the past is no ordinary differential equation"
 JUMPS = "motions that jump are no smooth flow; orbits.Machine takes them"
 ARRAYS = "arrays are not read; write a line for each state"
 PIECES = "conditions and comparisons are not read; heav(x), sign(x), abs(x), max(x,y), min(x,y) are, and a sigmoid is smooth"
-#: what XPP has beside ordinary differential equations -> why it is refused
+#: pattern of a line of XPP that is no ordinary differential equation -> the message for it
 REFUSED = {
     r"wiener\s+[^\s=]": RANDOM,
     r"markov\s+[^\s=]": RANDOM,
@@ -72,7 +71,7 @@ PARAMETER = re.compile(r"([A-Za-z_]\w*)\s*=\s*([^,\s]+)")
 
 
 def name_of(symbol: object) -> str:
-    """Of a symbol, or of a function of time that stands for a state, as x(t) of SymPy's mechanics."""
+    """Return the name of a symbol, or of a state as a function of time (x(t) in SymPy's mechanics)."""
     from sympy.core.function import AppliedUndef
 
     return type(symbol).__name__ if isinstance(symbol, AppliedUndef) else str(symbol)
@@ -81,12 +80,17 @@ def name_of(symbol: object) -> str:
 def compiled_expressions(
     expressions: Sequence[object], states: Sequence[object], parameters: Sequence[str], time: object = None
 ) -> tuple[Callable, Callable]:
-    """f and its Jacobian from SymPy expressions of states and parameters.
+    """Compile f and its Jacobian from SymPy expressions of states and parameters.
+
+    Returns
+    -------
+    (callable, callable)
+        (x, p) or (x, p, t) -> f, and df/dx, as nested lists; vectorised.
 
     Raises
     ------
     ValueError
-        If an expression cannot be read, a symbol has no value, or one name stands for two of them.
+        If an expression cannot be read, a symbol has no value, or a name is used twice.
     """
     import sympy
 
@@ -100,7 +104,7 @@ def compiled_expressions(
         raise ValueError(
             f"the name {twice!r} is there twice among states, params and time; choose another one"
         )
-    # real symbols: the derivative of an absolute value is a sign
+    # with real symbols the derivative of an absolute value is a sign
     plain = {s: sympy.Symbol(name_of(s), real=True) for s in (*states, *([] if time is None else [time]))}
     rates = sympy.Matrix([_expression(e) for e in expressions]).subs(plain)
     rates = rates.subs({s: sympy.Symbol(str(s), real=True) for s in rates.free_symbols})
@@ -114,7 +118,7 @@ def compiled_expressions(
         raise ValueError(f"the expressions have {', '.join(unknown)}; give a value in params for each")
     d = len(states)
     value = sympy.lambdify(own, list(rates), modules="numpy")
-    # the derivative of a step is zero beside it
+    # the derivative of a step function is zero except at the step
     slopes = rates.jacobian(own[:d]).replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
     slope = sympy.lambdify(own, slopes.tolist(), modules="numpy")
 
@@ -150,11 +154,11 @@ class Formula(NamedTuple):
     where : str
         The line, for messages.
     code : CodeType
-        Its names end with an underscore: words of Python are names as any others.
+        Compiled formula. All its names end with an underscore, so that Python's keywords may be names.
     names : set of str
-        Quantities.
+        Quantities in the formula.
     calls : list of (str, int)
-        Functions, and with how many arguments each of them is called.
+        Functions that it calls, with the numbers of arguments.
     """
 
     where: str
@@ -171,23 +175,23 @@ class Function(NamedTuple):
 
 
 def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[str, float], str]:
-    """f, the names of the states, their starts and the parameters from an .ode file, and the line that depends on time, or nothing.
+    """Read an .ode file: return f, the names of the states, their starts, the parameters, and a line that depends on time (or "").
 
-    Read are ``x'=...`` and ``dx/dt=...``, ``par``, ``number``, ``init`` and ``x(0)=``, functions ``f(x,y)=...`` and fixed quantities
-    ``name=...`` or ``!name=...``; a line that ends with ``\\`` goes on in the next one. Lines that begin with ``aux``, ``set``, ``only``, ``export``,
-    ``options``, ``@``, ``"`` or ``#`` are passed over, and all after ``done``.
+    It reads ``x'=...`` and ``dx/dt=...``, ``par``, ``number``, ``init`` and ``x(0)=``, functions ``f(x,y)=...`` and fixed quantities
+    ``name=...`` or ``!name=...``; a line that ends with ``\\`` continues in the next one. Lines that begin with ``aux``, ``set``, ``only``, ``export``,
+    ``options``, ``@``, ``"`` or ``#`` are ignored, and so are all lines after ``done``.
 
     Raises
     ------
     ValueError
-        For what cannot be read; the sentence has the line.
+        If a line cannot be read; the message quotes it.
     """
     rates: dict[str, Formula] = {}
     starts: dict[str, float] = {}
     parameters: dict[str, float] = {}
     fixed: dict[str, Formula] = {}
     functions: dict[str, Function] = {}
-    begun: dict[str, str] = {}  # states with starts, and where
+    begun: dict[str, str] = {}  # states with initial values -> their lines, for messages
 
     def new(name: str, where: str) -> str:
         if name == "t" or callable(WORDS.get(name)):
@@ -201,7 +205,7 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     for number, raw in _whole_lines(Path(path).read_text(encoding="utf-8", errors="replace")):
         include = raw.lower().startswith("#include")
         low = (raw if include else raw.split("#")[0]).strip().lower()
-        if not low or PASSED.match(low):
+        if not low or IGNORED.match(low):
             continue
         if low == "done":
             break
@@ -248,7 +252,7 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
 
 
 def _whole_lines(text: str) -> Iterator[tuple[int, str]]:
-    """Lines with the number of the first one of each, those joined that go on."""
+    """Generate (number, line), with continued lines joined under the number of the first."""
     begun, number = "", 1
     for i, line in enumerate(text.splitlines(), start=1):
         number = number if begun else i
@@ -268,13 +272,14 @@ def _refuse_unknown(
     fixed: Mapping[str, Formula],
     functions: Mapping[str, Function],
 ) -> str:
-    """Refuse names that stand for nothing; the line that depends on time, or nothing."""
+    """Raise an error for undefined names; return the first line that depends on time, or ""."""
     counts = {name: len(function.arguments) for name, function in functions.items()}
     words = {name for name, word in WORDS.items() if callable(word)}
     quantities = {*WORDS, *rates, *parameters, "t"} - words
     timed = ""
     lines: list[tuple[Formula, list[str]]] = [
-        *((formula, list(fixed)[:k]) for k, formula in enumerate(fixed.values())),  # those above
+        # a fixed quantity may use those of earlier lines
+        *((formula, list(fixed)[:k]) for k, formula in enumerate(fixed.values())),
         *((function.body, [*fixed, *function.arguments]) for function in functions.values()),
         *((formula, list(fixed)) for formula in rates.values()),
     ]

@@ -1,4 +1,4 @@
-"""A user's right-hand side and its derivatives at many points at once, and the events that stop motions."""
+"""Field: a user's right-hand side and its derivatives at many points at once; Events: functions whose zeros stop motions."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from .sparse import LARGE, found_sparsity
 if TYPE_CHECKING:
     from ..problems.functions import Parameters
 
-STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so a hundredfold rounding of it
-SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
-SWEEPS = 30  # of Newton's method to an equilibrium
-RANK = 8.0 * ROUNDED  # singular values below this part of the largest one are zero
-FINER = 4  # places between two nodes at which the smallest value of an event is looked for first
-ROUNDS = 3  # each of which looks ...
-CLOSER = 16  # ... so many times as closely
+STEP = 0.01  # of sixth-order differences, in lengths over which the right-hand side is nonlinear; the error is a hundred times its rounding
+SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # weights of f(x + k h) - f(x - k h)
+SWEEPS = 30  # most steps of Newton's method for an equilibrium
+RANK = 8.0 * ROUNDED  # singular values below this part of the largest one count as zero
+FINER = 4  # places between two nodes at which an event is evaluated first, to find its smallest value
+ROUNDS = 3  # refinements of that search, ...
+CLOSER = 16  # ... each on so many parts of the remaining interval
 
 
 class Field:
-    """x' = f(x, p) or f(x, p, t), at points of shape (n, d) and times of shape (n,).
+    """The right-hand side of x' = f(x, p) or f(x, p, t), evaluated at points of shape (n, d) and times of shape (n,).
 
     Parameters
     ----------
@@ -42,8 +42,9 @@ class Field:
     jacobian : callable, optional
         df/dx, shape (d, d), of the same arguments.
     derivative : callable, or mapping of str to callable, optional
-        df/dp, shape (d,); of several parameters by name.
+        df/dp, shape (d,); a mapping by name for several parameters.
     events : mapping of str to callable, optional
+        See :class:`Events`.
     start : ndarray, shape (d,)
     values : ParameterSet
     period : callable, optional
@@ -53,7 +54,7 @@ class Field:
     Raises
     ------
     ValueError
-        If f, an event, or a derivative that is given, is wrong at the start.
+        If f, an event, or a given derivative is unusable at the start.
     """
 
     def __init__(
@@ -94,8 +95,8 @@ class Field:
         d = self.node
         self._rates = AtPoints(f, self.forced, (d,))
         self._matrices = None if jacobian is None else AtPoints(jacobian, self.forced, (d, d))
-        self._slopes: dict[str, AtPoints] = {}  # by the name of the parameter
-        self.complex_slopes: dict[str, bool] = {}  # likewise
+        self._slopes: dict[str, AtPoints] = {}  # given df/dp by the name of the parameter
+        self.complex_slopes: dict[str, bool] = {}  # by parameter: whether the complex step works for it
         x = start + np.random.default_rng(5).uniform(-0.1, 0.1, (TRIED, d)) * self.lengths
         t = np.linspace(0.05, 0.95, TRIED) * self.length_of_period(values.start) if self.forced else None
         with np.errstate(all="ignore"):
@@ -106,11 +107,11 @@ class Field:
         self.events = Events(events, self.forced, start, values, settings.agree)
 
     def _at_zero(self, f: Callable) -> Callable:
-        """A function of (x, p, t) at t = 0."""
+        """Fix t = 0 in a function of (x, p, t)."""
         return (lambda x, p: f(x, p, 0.0)) if self.forced and callable(f) else f
 
     def against(self, values: ParameterSet) -> Field:
-        """The same field with other values of the parameters."""
+        """Return the same field with other values of the parameters."""
         other = copy(self)
         other.values = values
         return other
@@ -120,12 +121,12 @@ class Field:
     @overload
     def length_of_period(self, p: complex) -> complex: ...
     def length_of_period(self, p: complex) -> complex:
-        """Period of f in time.
+        """Return the period of f in time.
 
         Raises
         ------
         NotEvaluable
-            If it is not positive.
+            If it is not positive and finite.
         """
         assert self.period is not None
         try:
@@ -138,12 +139,12 @@ class Field:
 
     # ------------------------------------------------------------------ values
     def __call__(self, x: np.ndarray, p: complex, t: np.ndarray | None = None) -> np.ndarray:
-        """f at the points, shape (n, d).
+        """Return f at the points, shape (n, d).
 
         Raises
         ------
         NotEvaluable
-            If f fails or does not return d numbers, real ones of real states.
+            If f fails, does not return d numbers, or returns complex numbers for real arguments.
         """
         found = self._asked(self._rates, x, p, t)
         if found.dtype.kind == "c" and x.dtype.kind != "c" and not isinstance(p, complex):
@@ -161,7 +162,7 @@ class Field:
             raise NotEvaluable(f"the right-hand side raises {type(error).__name__}: {error}") from error
 
     def rate_at(self, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
-        """(t, x) -> x' as scipy's integrators want it, NaN where f fails."""
+        """Return the function (t, x) -> x' for scipy's integrators; NaN where f fails."""
         f, parameters, forced = self.f, self.values.at(p), self.forced
 
         def rate(t: float, x: np.ndarray) -> np.ndarray:
@@ -177,7 +178,7 @@ class Field:
 
     # ------------------------------------------------------------------ derivatives
     def _find_sparsity(self, start: np.ndarray) -> Colouring | None:
-        """Where df/dx has entries, at places beside the start."""
+        """Sparsity pattern of df/dx, from its entries at random points next to the start; None if it is dense."""
         noise, p = np.random.default_rng(9).uniform(-0.3, 0.3, (3, self.node)), self.values.start
         t = np.array([0.3 * self.length_of_period(p)]) if self.forced else None
         given, parameters = self._matrices, self.values.at(p)
@@ -194,7 +195,7 @@ class Field:
             return None
 
     def _along(self, masks: np.ndarray, x: np.ndarray, p: float, t: np.ndarray | None) -> np.ndarray:
-        """Sums of columns of df/dx at the points, shape (k, n, d), for k masks of columns; by the complex step in one call, else in units of the lengths."""
+        """Sums of columns of df/dx at the points, shape (k, n, d), for k masks of columns: by the complex step, or by differences in units of the lengths."""
         if self.complex_step:
             moved = (x + 1j * COMPLEX_STEP * masks[:, None]).reshape(-1, self.node)
             times = None if t is None else np.tile(t, len(masks))
@@ -203,7 +204,7 @@ class Field:
         return np.array([_difference(lambda s, h=h: self(x + s * h, p, t)) / STEP for h in steps])
 
     def jacobian_entries(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
-        """The entries of a sparse df/dx at the points, shape (n, entries): in the order of the sparsity pattern."""
+        """Return the entries of a sparse df/dx at the points, shape (n, entries), in the order of the sparsity pattern."""
         pattern, given = self.sparsity, self._matrices
         assert pattern is not None
         found = np.empty((len(x), len(pattern.indices)))
@@ -221,7 +222,7 @@ class Field:
         return found if self.complex_step else found / self.lengths[pattern.columns]
 
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
-        """df/dx at the points, shape (n, d, d)."""
+        """Return df/dx at the points, shape (n, d, d)."""
         if self._matrices is not None:
             return self._asked(self._matrices, x, p, t)
         found = np.ascontiguousarray(self._along(np.eye(self.node), x, p, t).transpose(1, 2, 0))
@@ -230,14 +231,15 @@ class Field:
     def rest(
         self, x: np.ndarray, p: float, sizes: np.ndarray, tolerance: float, far: float = np.inf
     ) -> np.ndarray | None:
-        """The equilibrium to which Newton's method leads from a state; None where it is more than `far` sizes away, or none.
+        """Return the equilibrium to which Newton's method converges from a state; None if it fails or moves farther than `far` sizes.
 
         Parameters
         ----------
         x, sizes : ndarray, shape (d,)
+            Start, and typical sizes of the states.
         p : float
         tolerance : float
-            Of the last correction, in sizes.
+            Largest last correction, in sizes.
         """
         start = x
         for _ in range(SWEEPS):
@@ -259,20 +261,20 @@ class Field:
     def carried(
         self, x: np.ndarray, vectors: np.ndarray, p: float, t: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """f at the points, and df/dx times a vector at each, shape (n, d) both: of one call where complex numbers may be asked."""
+        """Return f and df/dx times a vector at each point, shape (n, d) both; one call of f is enough if the complex step works."""
         if self.complex_step and self._matrices is None:
             found = self(x + 1j * COMPLEX_STEP * vectors, p, t)
             return np.real(found), np.imag(found) / COMPLEX_STEP
         return self(x, p, t), np.einsum("nab,nb->na", self.jacobian(x, p, t), vectors)
 
     def along(self, line: Callable[[complex], np.ndarray], p: float) -> np.ndarray:
-        """Derivative of a function of the parameter at p: by the complex step where f and the period allow it, else by differences.
+        """Return the derivative of a function of the parameter at p: by the complex step if f and the period allow it, else by differences.
 
-        Whether they do is tried once for each parameter: they may take its magnitude.
+        This is tested once for each parameter: f or the period may contain its magnitude, for example.
         """
         name = self.values.varying
         if self.complex_slopes.get(name, self.complex_step):
-            with contextlib.suppress(NotEvaluable):  # what takes real numbers alone
+            with contextlib.suppress(NotEvaluable):  # f or the period may accept real numbers only
                 exact = np.imag(line(complex(p, COMPLEX_STEP))) / COMPLEX_STEP
                 if name not in self.complex_slopes:
                     near = along(lambda t: line(p + t), abs(p) or 1.0)
@@ -287,14 +289,14 @@ class Field:
         return given.get(self.values.varying) if isinstance(given, Mapping) else given
 
     def with_slope(self, x: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
-        """f and df/dp at the points of an autonomous flow, shape (n, d) each."""
+        """Return f and df/dp at points of an autonomous flow, shape (n, d) each."""
         if self._given_slope() is not None or not self.complex_slopes.get(self.values.varying, False):
             return self(x, p), self.slope(x, p)
         value = self(x, complex(p, COMPLEX_STEP))
         return np.real(value), np.imag(value) / COMPLEX_STEP
 
     def slope(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
-        """df/dp at fixed points and times, shape (n, d)."""
+        """Return df/dp at points and times, shape (n, d)."""
         given, name = self._given_slope(), self.values.varying
         if given is None:
             return self.along(lambda q: self(x, q, t), p)
@@ -310,7 +312,7 @@ def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
 
 
 class Events:
-    """Functions (x, p), of forced flows (x, p, t), of which none changes its sign along a motion; the sign is that at the flow's start.
+    """Event functions (x, p), or (x, p, t) of forced flows: a motion stops where one vanishes. Each has the sign that it has at the flow's start.
 
     Parameters
     ----------
@@ -319,12 +321,12 @@ class Events:
     start : ndarray, shape (d,)
     values : ParameterSet
     agree : float
-        Relative difference of values that must be equal.
+        Largest relative difference between values of one call and of single calls, see :class:`AtPoints`.
 
     Raises
     ------
     ValueError
-        If a name or a function cannot be used, or one is zero or no finite number at the start.
+        If a name or a function is unusable, or a function is zero or not finite at the start.
     """
 
     def __init__(
@@ -364,7 +366,7 @@ class Events:
     def __call__(
         self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
     ) -> np.ndarray:
-        """Values at points (n, d), positive where motions are, shape (n, events).
+        """Return the values at points (n, d), positive on the side of the motions, shape (n, events).
 
         Raises
         ------
@@ -387,14 +389,14 @@ class Events:
         period: float,
         parameters: Parameters | complex,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The smallest value of each along a periodic motion, and the place where it has it, in units of the period.
+        """Return the smallest value of each event along a periodic motion, and its place in units of the period.
 
         Parameters
         ----------
         motion : callable
             Places in units of the period -> states (n, d).
         edges : ndarray
-            Places, in order, between which a function has one smallest value at most.
+            Places in increasing order, so close that an event has at most one minimum between two of them.
         """
 
         def values(places: np.ndarray) -> np.ndarray:
@@ -420,7 +422,7 @@ class Events:
         return smallest, where % 1.0
 
     def crossings(self, values: ParameterSet, p: float) -> Sequence[Callable]:
-        """The functions as scipy's integrators want them, each of which ends the integration."""
+        """Return the events as terminal event functions of scipy's integrators."""
         parameters = values.at(p)
 
         def stopping(sign: float, function: AtPoints) -> Callable:

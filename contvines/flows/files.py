@@ -1,4 +1,4 @@
-"""Flows from what files describe."""
+"""Flows from files: descriptions in saved graphs, .ode files of XPP, Python files of studies, solutions of AUTO-07p."""
 
 from __future__ import annotations
 
@@ -25,11 +25,12 @@ if TYPE_CHECKING:
     from .orbit import CycleOrbit
 
 
-_known: dict[str, FlowProblem] = {}  # branches of one graph share their flow
+# flows from descriptions, so that the branches of a graph share one flow
+_rebuilt: dict[str, FlowProblem] = {}
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> Equilibria | CycleProblem | None:
-    """Equilibria or cycles of a flow from what ``describe()`` returned; None where its functions are not at hand."""
+    """Rebuild equilibria or cycles of a flow from the result of ``describe()``; None if its functions cannot be found."""
     flow = _flow(description, trust)
     return None if flow is None else flow.problem_of(description)
 
@@ -37,20 +38,20 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Equ
 def read_ode(
     path: str | Path, x0: Sequence[float] | np.ndarray | float | None = None, **options: Unpack[NamedOptions]
 ) -> FlowProblem:
-    """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities. Only arithmetic of the file is evaluated.
+    """Read a flow from an .ode file of XPP: equations, parameters, functions and fixed quantities. Only its arithmetic is evaluated.
 
     Parameters
     ----------
     path : str or Path
     x0 : array_like, optional
-        Instead of the file's initial values.
+        Start; by default the file's initial values.
     **options
-        Of :class:`contvines.FlowProblem`; names are in small letters.
+        Options of :class:`contvines.FlowProblem`. All names of the file are in lower case.
 
     Raises
     ------
     ValueError
-        For what cannot be read, or depends on time without ``period=``; the sentence has the line.
+        If a line cannot be read, or depends on time without ``period=``; the message quotes it.
     """
     f, states, starts, parameters, timed = read_text(path)
     if timed and options.get("period") is None:
@@ -66,18 +67,18 @@ def _names(description: Mapping[str, Any]) -> list[str]:
 
 
 def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
-    """The flow, one for all branches of a graph."""
+    """The flow of a description; all branches of a graph share one."""
     about = description["flow"]
     key = json.dumps([description["callables"], about, description["name"], sorted(_names(description))])
-    if key in _known:
-        return _known[key]
+    if key in _rebuilt:
+        return _rebuilt[key]
     if about.get("file"):
         file, name, digest = about["file"]
-        known = [
+        loaded = [
             flow for flow in _loaded.values() if flow.origin is not None and flow.origin[1:] == (name, digest)
         ]
-        if known or not trust:
-            return known[0] if known else None
+        if loaded or not trust:
+            return loaded[0] if loaded else None
         if not Path(file).is_file():
             raise OSError(
                 f"{file}: the file of the flow {name!r} is gone; put it back, or beside the result, or make the result anew"
@@ -97,7 +98,7 @@ def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
         period = found["period"]
     functions.pop("preconditioner", None)
     functions.pop("period", None)
-    flow = _known[key] = FlowProblem(
+    flow = _rebuilt[key] = FlowProblem(
         functions.pop("F"),
         about["x0"],
         description["p0"],
@@ -118,14 +119,14 @@ _loaded: dict[tuple[str, str], FlowProblem] = {}
 
 
 def load_flow(path: str | Path, name: str) -> FlowProblem | None:
-    """Run a Python file and take the flow that it names; None if that is something else.
+    """Run a Python file and return its flow of a given name; None if the name is missing or is no flow.
 
-    Only for a file that the user has named.
+    The file's code is run: call it only for a file that the user has named.
 
     Raises
     ------
     ValueError
-        If the file does not run, or has other flows but nothing of that name.
+        If the file does not run, or if it has flows but no object of that name.
     """
     module = module_of(path)
     flow = getattr(module, name, None)
@@ -141,18 +142,18 @@ def load_flow(path: str | Path, name: str) -> FlowProblem | None:
 
 @dataclass(frozen=True)
 class FlowFamily:
-    """A flow of a file; the file is run in each worker process.
+    """A family of flows for a survey, from a Python file that is run in each worker process.
 
     Attributes
     ----------
     file, name : str
-        The Python file and the flow in it.
+        The Python file and the name of its flow.
     parameter : str
-        Which varies along each diagram.
+        Parameter that varies along each diagram.
     values : mapping of str to float
-        Of the parameters that do not vary from system to system.
+        Parameters that are the same for all systems.
     state : sequence of float, optional
-        Diagrams begin with the cycle on which a motion from there settles; else, of flows that are not forced, with an equilibrium.
+        If given (and always for forced flows), a diagram begins with the cycle on which a motion from this state settles; else with an equilibrium.
     box : sequence of (low, high), optional
         Ranges of the states from which simulations begin.
     """
@@ -165,12 +166,12 @@ class FlowFamily:
     box: Sequence[tuple[float, float]] | None = None
 
     def __call__(self, values: Mapping[str, float], near: object = None) -> CycleOrbit | Equilibria:
-        """The start of a system's diagram.
+        """Return the start of the diagram of the system with these parameter values.
 
         Raises
         ------
         ValueError
-            If there is none, or the file has no such flow any more.
+            If no start is found, or the file no longer contains the flow.
         """
         flow = load_flow(self.file, self.name)
         numbers: dict[str, Any] = {**self.values, **values}
@@ -190,12 +191,12 @@ class AutoSolution:
     ----------
     branch, point, label : int
     kind : int
-        AUTO's number of the type: 2 and 5 folds, 3 Hopf points, 7 period doublings, 9 ends.
+        AUTO's type number: 2 and 5 folds, 3 Hopf points, 7 period doublings, 9 ends.
     times : ndarray, shape (n,)
-        In units of the period; a single 0 for an equilibrium.
+        Times in units of the period; a single 0 for an equilibrium.
     states : ndarray, shape (n, d)
     parameters : ndarray, shape (m,)
-        PAR(1) first.
+        PAR(1), PAR(2), ...
     """
 
     branch: int
@@ -212,7 +213,7 @@ class AutoSolution:
 
     @property
     def period(self) -> float:
-        """PAR(11), where AUTO keeps the period of a cycle.
+        """PAR(11), the period of a cycle in AUTO.
 
         Raises
         ------
@@ -227,9 +228,9 @@ class AutoSolution:
 
 
 def read_auto(path: str | Path) -> list[AutoSolution]:
-    """The solutions of a file s.NAME of AUTO-07p.
+    """Read the solutions of a file s.NAME of AUTO-07p.
 
-    A cycle is gone on with by ``flow.cycle(solution.times * solution.period, solution.states, mu=solution.parameters[0])``.
+    To continue a cycle, call ``flow.cycle(solution.times * solution.period, solution.states, mu=solution.parameters[0])``.
 
     Parameters
     ----------
@@ -256,7 +257,7 @@ def read_auto(path: str | Path) -> list[AutoSolution]:
 
 
 def _solutions(lines: list[str]) -> Iterator[AutoSolution]:
-    """Solutions one after the other: a line of whole numbers says how many lines and numbers follow."""
+    """Generate the solutions; each begins with a line of whole numbers that gives the number of lines and numbers that follow."""
     k = 0
     while k < len(lines):
         head = [int(word) for word in lines[k].split()]
@@ -266,7 +267,7 @@ def _solutions(lines: list[str]) -> Iterator[AutoSolution]:
         if k + rows >= len(lines):
             raise ValueError
         k += 1 + rows
-        if points == 0:  # the last line of some files only says how far labels have come
+        if points == 0:  # the last line of some files only contains the last label
             continue
         values = np.array([_number(word) for word in numbers])
         along = values[: points * size].reshape(points, size)
@@ -275,7 +276,7 @@ def _solutions(lines: list[str]) -> Iterator[AutoSolution]:
 
 
 def _number(word: str) -> float:
-    """A number as Fortran writes it: the letter of its exponent is D, or is missing where that has three digits."""
+    """Convert a number in Fortran's format: the exponent has the letter D, or no letter if it has three digits."""
     try:
         return float(word.replace("D", "E").replace("d", "e"))
     except ValueError:

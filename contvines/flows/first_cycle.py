@@ -1,4 +1,4 @@
-"""The first cycle: from states at times to the cycle beside them."""
+"""First cycle of a continuation: Newton's method from states at given times to the cycle near them."""
 
 from __future__ import annotations
 
@@ -19,22 +19,23 @@ if TYPE_CHECKING:
     from .field import Field
     from .flow import Flow
 
-INTERVALS = 40  # of a cycle from data, to begin with ...
-HALVES = 2  # equal parts of its mesh, so that what comes back half a period later, itself or its mirror image, is as exact as the cycle
-MORE = 1, 4, 16  # ... and times those, where that does not converge, as bursts of sharp spikes
-MOST_TURNS = 64  # after which a motion may come back to where it was
-MESHES = 10.0  # times the error of a cycle between its mesh points: cycles on different meshes that are one
+INTERVALS = 40  # mesh intervals of a cycle from data ...
+MORE = 1, 4, 16  # ... and their multiples that are tried in turn: bursts of sharp spikes need more
+HALVES = 2  # equal parts of the mesh: a state and its image half a period later are then known with the same accuracy
+MOST_TURNS = 64  # most repetitions of a shorter cycle in a motion
+# largest distance of equal cycles on different meshes, in units of the error between mesh points
+MESHES = 10.0
 
 
 def cycle_beside(
     flow: Flow, times: np.ndarray, states: np.ndarray, parameters: ParameterSet, rounds: int
 ) -> CycleOrbit:
-    """The cycle beside states (n, d) at times (n,), from the first time to one period later (of forced flows: so many periods of the forcing).
+    """Solve for the cycle near states (n, d) at times (n,), which cover one period (of forced flows: `rounds` periods of the forcing).
 
     Raises
     ------
     ValueError
-        If Newton's method leads to none, to an equilibrium, or beyond an event.
+        If Newton's method fails, or converges to an equilibrium or to a cycle that crosses an event.
     """
     field, s, p = flow.field.against(parameters), flow.settings, parameters.start
     ranges = np.ptp(states, axis=0)
@@ -57,7 +58,7 @@ def cycle_beside(
             "Newton's method does not converge from these states; give a longer transient= (of attractor), or times and states nearer to one period of a cycle"
         )
     cycles, u = found
-    # rest of a forced flow is a motion with the period of its forcing
+    # a constant solution of a forced flow is a cycle with the period of the forcing
     if not field.forced and (np.ptp(cycles.curve(u)[0], axis=(0, 1)) / scale).max() < s.same:
         raise ValueError("Newton's method leads from these states to an equilibrium, not to a cycle")
     name = cycles.crossed(u, p)
@@ -79,7 +80,7 @@ def _guess(
     widths: np.ndarray,
     rounds: int,
 ) -> np.ndarray:
-    """Unknowns of a cycle from states at times."""
+    """Unknowns of a cycle, interpolated from states at times."""
     places = mesh.node_places(mesh.rule(degree), widths)
     own = [] if field.forced else [times[-1] - times[0]]
     if field.forced:
@@ -95,7 +96,7 @@ def _guess(
 def _once(flow: Flow, orbit: CycleOrbit, parameters: ParameterSet, rounds: int) -> CycleOrbit | None:
     """The shorter cycle that an orbit repeats several times; None if there is none.
 
-    A motion that goes round a cycle while it comes nearer may recur after several periods sooner than after one.
+    A motion that spirals towards a cycle may be found to recur after several periods before it is found to recur after one.
     """
     lengths, forced, s = flow.field.lengths, flow.field.forced, flow.settings
     own = np.ptp(orbit.states, axis=0) / lengths

@@ -1,4 +1,4 @@
-"""Flow: a user's differential equations, as their equilibria, cycles and many starts know them."""
+"""Flow: base class of differential equations, with the members that their equilibria, cycles and populations use."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Sizes = tuple[np.ndarray, float, float]  #: of states, period and parameter
 
 
 class FlowOptions(TypedDict, total=False):
-    """What may be said of a flow beside its equations; see :class:`FlowProblem`."""
+    """Optional arguments of a flow; see :class:`FlowProblem`."""
 
     mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None
     period: Callable | float | None
@@ -44,26 +44,26 @@ class FlowOptions(TypedDict, total=False):
 
 
 class NamedOptions(FlowOptions, total=False):
-    """The same, and names of the states."""
+    """The same, with the names of the states."""
 
     states: Sequence[str] | None
 
 
 class Flow(ABC):
-    """What is read of :class:`contvines.FlowProblem`, and what flows of another origin, as those of machines, have otherwise.
+    """Base class of :class:`contvines.FlowProblem` and of other flows, such as those of machines, which override some members.
 
     Attributes
     ----------
     x0 : ndarray, shape (d,)
         A start.
     given : dict
-        Functions as the user gave them: "F", "jacobian", "derivative", "mirror", "events".
+        The user's functions: "F", "jacobian", "derivative", "mirror", "events".
     of_states : dict
-        Names of measures of states -> ("max", "min" or "mean", number of the state).
+        Names of measures of states -> ("max", "min" or "mean", index of the state).
     mirror_shifted : bool
-        Whether the mirror image of a forced motion is one half a period later.
+        Forced flows: whether the mirror image of a motion must be shifted by half a period to be a motion.
     box : sequence of (low, high), optional
-        In which motions begin, of a study that has one.
+        Ranges of the states from which simulations begin, if a study gives them.
     """
 
     name: str
@@ -82,18 +82,18 @@ class Flow(ABC):
     events: Events
     mirror: Image | None
     mirror_shifted = False
-    sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
+    sizes: tuple[np.ndarray, float] | None = None  # scales of states and period, of cycles
     box: Sequence[tuple[float, float]] | None = None
-    origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
+    origin: tuple[str, str, str] | None = None  # file, name and digest, if a study names the flow
 
     def mirrored(self, x: np.ndarray) -> np.ndarray:
-        """Mirror images of states, shape (n, d)."""
+        """Return the mirror images of states, shape (n, d)."""
         assert self.mirror is not None
         return np.array([self.mirror(y) for y in x])
 
-    # ------------------------------------------------------------------ what is refused
+    # ------------------------------------------------------------------ checks
     def _check_rates(self) -> None:
-        """Refuse a right-hand side that differs when it is asked twice, as a simulation of it may take ever smaller steps, without end; a wrong period; a wrong mirror."""
+        """Raise an error if two evaluations of f differ (an integrator's steps could shrink without end), or if period or mirror are wrong."""
         rate = self.field.rate_at(self.values.start)
         with np.errstate(all="ignore"):
             different = difference_text(rate(0.0, self.x0), rate(0.0, self.x0))
@@ -104,19 +104,19 @@ class Flow(ABC):
             self._find_mirror()
 
     def _beside(self, seed: int, width: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """States and times drawn beside the start, and the period there."""
+        """Random states next to the start, random times, and the period."""
         rng, period = np.random.default_rng(seed), self.field.length_of_period(self.values.start)
         x = self.x0 + self.field.lengths * rng.uniform(-width, width, (6, len(self.x0)))
         return x, rng.uniform(0.0, period, 6), period
 
     def _check_period(self) -> None:
-        """Refuse a right-hand side that does not repeat after its period, tried at states beside the start."""
+        """Raise an error if f at random states next to the start does not repeat after its period."""
         p, (x, t, period) = self.values.start, self._beside(6, 0.1)
         try:
             with np.errstate(all="ignore"):
                 one, later = self.field(x, p, t), self.field(x, p, t + period)
         except NotEvaluable:
-            return  # states beside the start may be outside of where f is defined
+            return  # states next to the start may be outside the domain of f
         size = TINY + np.nanmax(np.abs(one), initial=0.0)
         if np.nanmax(np.abs(one - later), initial=0.0) > self.settings.recurs * size:
             raise ValueError(
@@ -124,7 +124,7 @@ class Flow(ABC):
             )
 
     def _find_mirror(self) -> None:
-        """Whether the mirror image of a forced motion is one at the same time, or half a period later; one that is neither is refused."""
+        """Set ``mirror_shifted`` by testing whether f has the mirror at the same time or half a period later; raise an error if neither holds."""
         if self.mirror is None:
             return
         p, (x, t, period) = self.values.start, self._beside(4, 1.0)
@@ -143,11 +143,11 @@ class Flow(ABC):
     def equilibria(
         self, parameter: str | None = None, values: Mapping[str, float] | None = None
     ) -> AlgebraicProblem:
-        """The equilibria as a continuation problem."""
+        """Return the equilibria as a continuation problem."""
 
     @abstractmethod
     def cycles(self, field: Field, u: np.ndarray, counts: tuple[int, int, int], sizes: Sizes) -> Problem:
-        """The problem of cycles; `counts` and `sizes` as :class:`contvines.flows.cycle_mesh.CycleMesh` has them."""
+        """Return the problem of cycles; for `counts` and `sizes` see :class:`contvines.flows.cycle_mesh.CycleMesh`."""
 
     @abstractmethod
     def attractor_at(
@@ -158,11 +158,11 @@ class Flow(ABC):
         longest: int = 64,
         doublings: int = 12,
     ) -> Any:
-        """The cycle on which a motion settles, a :class:`contvines.flows.orbit.CycleOrbit`."""
+        """Return the cycle on which a motion settles, a :class:`contvines.flows.orbit.CycleOrbit`."""
 
     @abstractmethod
     def cycle_at(self, values: Mapping[str, float], times: ArrayLike, states: ArrayLike) -> Any:
-        """The cycle near given states."""
+        """Return the cycle near given states."""
 
     @abstractmethod
     def population_at(
@@ -172,57 +172,57 @@ class Flow(ABC):
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
     ) -> Population:
-        """Many starts."""
+        """Return a population of starts."""
 
     @abstractmethod
     def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]:
-        """What starts settle on."""
+        """Simulate starts and list what they settle on."""
 
     @abstractmethod
     def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable solution as `simulated_attractors` lists it."""
+        """Return a stable solution as an entry of `simulated_attractors`."""
 
     # ------------------------------------------------------------------ measures
     @property
     def of_cycles(self) -> dict[str, str]:
-        """What tables call a cycle."""
+        """Part of a cycle's description: its word in tables."""
         return {"word": "cycle"}
 
     @property
     def own_measures(self) -> tuple[str, ...]:
-        """Measures beside those of any flow."""
+        """Names of further measures, which not every flow has."""
         return ()
 
     def measure_of(self, what: str, state: str) -> str:
-        """What the largest, smallest or mean value of a state is called."""
+        """Return the name of the measure for the largest, smallest or mean value of a state."""
         return f"{what} {state}"
 
     def measure_own(self, name: str, problem: Problem, u: np.ndarray, p: float) -> float:
-        """One of ``own_measures``."""
+        """Return the value of one of ``own_measures``."""
         raise KeyError(name)
 
     # ------------------------------------------------------------------ events that stop
     def border_kind(self, k: int) -> str:
-        """The kind of border at which a motion touches event k."""
+        """Return the kind of border at which a motion touches event k."""
         return "event"
 
     def beyond(self, problem: Problem, point: BorderPoint, k: int) -> list[Seed]:
-        """The motions that go on where one touches event k: none."""
+        """Return the motions beyond a border at which one touches event k: none."""
         return []
 
     def dead_end(self, k: int, x: np.ndarray, when: float | None = None) -> str:
-        """What stops motions at event k, in words: the state there, and of a cycle the time."""
+        """Return the sentence that event k stops the motion: with the state, and the time in a cycle's period."""
         place = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.states, x, strict=True))
         ahead = "" if when is None else f" at t = {when:.6g} of its period"
         return f"the event {self.events.names[k]} stops the motion: it is zero{ahead}, where {place}"
 
     # ------------------------------------------------------------------ files
     def rebuilt_by(self, importable: bool) -> str | None:
-        """The factory that builds the flow's problems again; None where its functions cannot be found again."""
+        """Return the name of the factory that rebuilds the flow's problems; None if its functions cannot be imported."""
         return "contvines.flows.files:from_description" if importable or self.origin else None
 
     def described(self) -> dict[str, Any]:
-        """What distinguishes the flow from its equations."""
+        """Return the data of the flow beside its functions, as part of ``describe()``."""
         period, changed = self.given_period, self.settings.changed()
         where, _ = addresses({"period": period if callable(period) else None})
         return {
@@ -237,7 +237,7 @@ class Flow(ABC):
         }
 
     def describe(self) -> dict[str, Any]:
-        """Name, start, and how to build the flow again if its functions can be imported."""
+        """Return name, start, and the data from which the flow is rebuilt if its functions can be imported."""
         where, importable = addresses(
             {**self.given, "period": self.given_period if callable(self.given_period) else None}
         )
@@ -262,12 +262,12 @@ def is_number(given: object) -> bool:
 
 
 def period_of(given: Callable | float | None, values: ParameterSet) -> Callable | None:
-    """The period of f in time as a function of the parameters.
+    """Return the period of f in time as a function of the parameters; None for an autonomous flow.
 
     Raises
     ------
     ValueError
-        If it is none at the start.
+        If the period at the start is not a positive number.
     """
     if given is None:
         return None

@@ -1,17 +1,18 @@
-"""Normal forms of cycles: folds, period doublings, pitchforks and Neimark-Sacker points, of the map from one return to the next.
+"""Normal forms of the return map of a cycle at folds, period doublings, pitchforks and Neimark-Sacker points.
 
-The equations of one return are those at the Gauss points, with the values x_0 ... x_N at the mesh points, where x_N is the x_0 of the next
-return, and with a period of its own; of autonomous flows x_0 stays in the plane across the motion. With J(m) their Jacobian where x_N = m x_0, K
-its part that belongs to x_N, B and C their second and third derivatives,
+The equations of one return are the collocation equations at the Gauss points, with the values x_0 ... x_N at the mesh points, where x_N is
+the x_0 of the next return, and with the time of return as an unknown; for autonomous flows x_0 lies in a plane across the motion. J(m) is
+their Jacobian with x_N = m x_0, K its part that belongs to x_N, and B and C are their second and third derivatives. Then
 
     fold            z + a z^2        a = -w.B(v, v) / (2 w.K v),                            J(1) v = 0
     m = -1 or 1     m z + c z^3       c = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(m) v = 0,   J(1) h = -B(v, v)
     Neimark-Sacker  m z + c z^2 z*    c = -w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.K q),   J(m) q = 0,
                                       J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);   d = Re(c / m)
 
-Where m = 1 (symmetry breaking, a branch point that is a pitchfork) J(1) is singular, w.B(v, v) = 0, and h is fixed up to v, of which nothing hangs.
-Critical vectors have unit length at x_0. The expansion is that of Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7,
-for the return map; Kuznetsov, Govaerts, Doedel and Dhooge, SIAM J. Numer. Anal. 43 (2005) 1407, have it with integrals along the cycle.
+where w is the left null vector of J(m). For m = 1 (symmetry breaking, or a branch point that is a pitchfork) J(1) is singular, w.B(v, v) = 0,
+and h is determined up to multiples of v, on which c does not depend. Critical vectors have unit length at x_0. The expansion is that of
+Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7, for the return map; Kuznetsov, Govaerts, Doedel and
+Dhooge, SIAM J. Numer. Anal. 43 (2005) 1407, use integrals along the cycle instead.
 """
 
 from __future__ import annotations
@@ -31,11 +32,13 @@ if TYPE_CHECKING:
 
     from .cycle_mesh import CycleMesh
 
-NEAR = 0.001  # distance along the critical direction at which the third derivative counts
-LARGEST = 100_000  # unknowns of one return up to which there are normal forms
-STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side bends
+# distance along the critical direction at which third derivatives enter the size of a fold's terms
+NEAR = 0.001
+LARGEST = 100_000  # most unknowns of one return for which normal forms are computed
+STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side is nonlinear
+# sixth-order second difference: weights of f(x + k h) + f(x - k h) ...
 SECOND = ((1, 1.5), (2, -0.15), (3, 1.0 / 90.0))
-MIDDLE = -49.0 / 18.0
+MIDDLE = -49.0 / 18.0  # ... and of f(x)
 
 
 class Return:
@@ -67,7 +70,7 @@ class Return:
         f = problem.field(self.points, p, self.times)
         self.size = self.states + self.free
         blocks = r.blocks(self.steps[:, None, None] * self.jacobian)
-        # triples of rows, columns and values; what belongs to x_N stands in the columns of x_0, in a matrix of its own
+        # sparse matrices from rows, columns and values; the part of x_N is a matrix of its own, in the columns of x_0
         rows = np.repeat(np.arange(self.states), (m + 1) * d).reshape(blocks.shape)
         columns = (
             np.broadcast_to(np.arange((m + 1) * d), blocks.shape) + (m * d * np.arange(count))[:, None, None]
@@ -85,16 +88,16 @@ class Return:
         self.whole = csc_array((values, (i, j)), shape=shape)
 
     def closed_by(self, factor: complex) -> csc_array:
-        """J(m)."""
+        """Return J(m)."""
         return csc_array(self.whole + factor * self.closure)
 
     def solve(self, factor: complex, side: np.ndarray) -> np.ndarray:
-        """J(m)^-1 applied to a vector."""
+        """Apply J(m)^-1 to a vector."""
         matrix = self.closed_by(factor)
         return splu(matrix).solve(side.astype(matrix.dtype))
 
     def parts(self, x: np.ndarray, factor: complex) -> tuple[np.ndarray, complex]:
-        """A perturbation at the Gauss points, and that of the period."""
+        """Split a perturbation into its values at the Gauss points and the change of the period."""
         problem = self.problem
         ends = mesh.closed(x[: self.states].reshape(problem.intervals, problem.rule.degree, problem.node))
         ends[-1, -1] = factor * x[: problem.node]
@@ -102,7 +105,7 @@ class Return:
         return at, x[-1] if self.free else 0.0
 
     def bent(self, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First and second derivative of the Jacobian of f along a real direction at each Gauss point."""
+        """Return the first and second derivatives of df/dx along a real direction at each Gauss point."""
         field = self.problem.field
         size = float((np.abs(direction) / field.lengths).max()) or 1.0
         step = STEP / size
@@ -116,21 +119,21 @@ class Return:
         return np.asarray(one) / step, np.asarray(two) / step**2
 
     def rows(self, values: np.ndarray) -> np.ndarray:
-        """Second or third derivatives of all equations, from those at the Gauss points."""
+        """Extend derivatives of the collocation equations by 0 for the plane's equation, which is linear."""
         flat = np.asarray(values).reshape(-1)
         return np.append(flat, 0.0) if self.free else flat
 
     def second(
         self, bent: np.ndarray, a: tuple[np.ndarray, complex], b: tuple[np.ndarray, complex]
     ) -> np.ndarray:
-        """B(a, b) of perturbations (at the Gauss points, period), where `bent` is the derivative of the Jacobian along a."""
+        """Return B(a, b) of two perturbations (at the Gauss points, period); `bent` is the derivative of df/dx along a."""
         (x, t), (y, s) = a, b
         value = -self.steps[:, None] * _apply(bent, y)
         value = value - self.widths[:, None] * (t * _apply(self.jacobian, y) + s * _apply(self.jacobian, x))
         return self.rows(value)
 
     def critical(self, factor: complex) -> Critical:
-        """Null vectors of J(m), and J(m) with a row for x_0 and a column for the last equations, which have no pattern."""
+        """Return the null vectors of J(m), and the factors of J(m) bordered by a random row for x_0 and a random column for the last equations."""
         matrix, d, n = self.closed_by(factor), self.problem.node, self.size
         edges = np.random.default_rng(6).standard_normal((2, n))
         edges[0, : self.states - self.problem.rule.degree * d] = 0.0
@@ -144,7 +147,7 @@ class Return:
 
 
 class Critical(NamedTuple):
-    """Null vector of J(m), of unit length at x_0, the left one, w.K v, and the factors of the bordered matrix."""
+    """Right null vector v of J(m), of unit length at x_0, left null vector w, ``weight`` w.K v, and the factors of the bordered matrix."""
 
     right: np.ndarray
     left: np.ndarray
@@ -157,7 +160,7 @@ def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
 
 
 def quadratic(problem: CycleMesh, u: np.ndarray, p: float, along: np.ndarray) -> tuple[float, float]:
-    """a at a fold, its sign that along a direction of the unknowns, and what it would be if B(v, v) pointed along w."""
+    """Return the coefficient a at a fold, and the sum of the magnitudes of its terms; the sign of v is that of `along`."""
     system = Return(problem, u, p)
     v, w, weight, _ = system.critical(1.0)
     here = system.parts(v, 1.0)
@@ -174,7 +177,7 @@ def quadratic(problem: CycleMesh, u: np.ndarray, p: float, along: np.ndarray) ->
 
 
 def cubic(problem: CycleMesh, u: np.ndarray, p: float, factor: float) -> tuple[float, float]:
-    """c at a period doubling (m = -1) or a pitchfork (m = 1), and the sum of the magnitudes of its terms."""
+    """Return c at a period doubling (m = -1) or a pitchfork (m = 1), and the sum of the magnitudes of its terms."""
     system = Return(problem, u, p)
     v, w, weight, bordered = system.critical(factor)
     here = system.parts(v, factor)
@@ -193,7 +196,7 @@ def _summed(terms: np.ndarray) -> tuple[float, float]:
 
 
 def neimark_sacker(problem: CycleMesh, u: np.ndarray, p: float, multiplier: complex) -> tuple[float, float]:
-    """d at a Neimark-Sacker point, Re(c / m), and the sum of the magnitudes of its terms."""
+    """Return d = Re(c / m) at a Neimark-Sacker point, and the sum of the magnitudes of its terms."""
     m = multiplier / abs(multiplier)
     system = Return(problem, u, p)
     q, w, weight, _ = system.critical(m)

@@ -1,15 +1,16 @@
-"""What a cycle becomes where its period grows without bound.
+"""Limits of cycles whose period grows without bound: homoclinic orbits, heteroclinic cycles, saddle-nodes, cycles that come to rest.
 
-Let s be the length along the branch and T' = dT/ds. The time t at which the cycle passes the plane across its motion at a point x changes by
+Let s be the arclength along the branch and T' = dT/ds. The time at which the cycle crosses the plane across its motion at a point x changes
+along the branch by
 
     dt/ds - f . (dx/ds) / (f . f),
 
-x and t being those of a node. Between two planes it grows by a share of T'. Beside an equilibrium to which the cycle tends that share is not small
-(of a homoclinic orbit nearly one, of heteroclinic cycles the shares of all equilibria are one together); beside another one that it passes at a
-distance the share tends to zero, as the cycle itself tends to a limit there.
+with x and t of a node. The time between two planes grows by a share of T'. Near an equilibrium to which the cycle tends, this share is not
+small: nearly one for a homoclinic orbit, and for a heteroclinic cycle the shares of all equilibria add up to one. Near an equilibrium that the
+limit passes at a distance, the share tends to zero.
 
-Where all of the cycle comes to rest, as on the circle of equilibria at which a rotating wave turns round, its largest speed falls as 1 / T; else it
-tends to that of the limit.
+If the whole cycle comes to rest, as at the circle of equilibria where a rotating wave reverses its rotation, its largest speed falls as 1 / T;
+otherwise the largest speed tends to that of the limit.
 """
 
 from __future__ import annotations
@@ -29,15 +30,14 @@ if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
 
 
-FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to a point of least speed is the one at which it stays
-SHARE = 0.01  # of the growth of the period: less of it is none
-HALF = (
-    -0.5
-)  # exponent of the period in the largest speed, between -1 of a cycle that comes to rest and 0 of others
+FAR = 0.05  # largest distance of an equilibrium from the point of lowest speed, in sizes of the cycle, at which the cycle tends to it
+SHARE = 0.01  # smallest share of the growth of the period at an equilibrium that belongs to the limit
+# exponent of the period in the largest speed that separates cycles that come to rest (-1) from others (0)
+HALF = -0.5
 
 
 class Limit(StrEnum):
-    """What a cycle of infinite period is."""
+    """Kinds of limits of cycles with growing period."""
 
     HOMOCLINIC = "homoclinic"
     HETEROCLINIC = "heteroclinic"
@@ -47,14 +47,14 @@ class Limit(StrEnum):
 
 @dataclass(frozen=True)
 class Saddle:
-    """An equilibrium at which a cycle stays longer and longer.
+    """An equilibrium near which the cycle stays longer and longer.
 
     Attributes
     ----------
     place : ndarray, shape (d,)
     eigenvalues : ndarray of complex, shape (d,)
     share : float
-        Of the growth of the period.
+        Part of the growth of the period that is spent near the equilibrium.
     """
 
     place: np.ndarray
@@ -75,13 +75,13 @@ class InfinitePeriod:
     ----------
     limit : Limit
     period : float
-        Of the last cycle.
+        Period of the last cycle.
     slowest : ndarray, shape (d,)
-        Where that is slowest.
+        State of the last cycle with the lowest speed.
     saddles : tuple of Saddle
-        One of a homoclinic orbit, in the order in which they are passed of a heteroclinic cycle; else none.
+        One for a homoclinic orbit, several in the order of passage for a heteroclinic cycle, else none.
     parameter, value : str, float
-        Of a cycle that comes to rest: where it does, as 1 / T, continued in a straight line, has it.
+        For a cycle that comes to rest: parameter and its value in the limit, by linear extrapolation of 1 / T to zero.
     """
 
     limit: Limit
@@ -109,7 +109,7 @@ class InfinitePeriod:
 
 
 def infinite_period(problem: CycleMesh, point: BorderPoint) -> InfinitePeriod:
-    """What the cycles of a branch become whose period grows without bound towards a point."""
+    """Return the limit of the cycles of a branch whose period grows without bound towards its end `point`."""
     ending, p = Ending(problem, point), float(point.value)
     value = p + ending.period * float(point.tangent[-1]) / ending.growth if ending.growth else p
     value = value if abs(value) > problem.flow.settings.rounded * abs(p) else 0.0
@@ -122,7 +122,7 @@ def infinite_period(problem: CycleMesh, point: BorderPoint) -> InfinitePeriod:
 
 
 class Ending:
-    """The last cycle of a branch, and how it changes along it: x, rates and change `moved` at the nodes, T and T'."""
+    """The last cycle of a branch and its change along the branch: states x, rates and derivatives ``moved`` at the nodes, T and T' (``growth``)."""
 
     def __init__(self, problem: CycleMesh, point: BorderPoint) -> None:
         self.problem, self.tangent, self.p = problem, point.tangent, float(point.value)
@@ -135,7 +135,7 @@ class Ending:
         self.speeds = np.linalg.norm(self.rates / self.units, axis=1)
 
     def exponent(self) -> float:
-        """d log(largest speed) / d log(period) along the branch; zero where the period does not change."""
+        """Return d log(largest speed) / d log(period) along the branch; 0 if the period does not change."""
         if not self.growth:
             return 0.0
         field, k = self.problem.field, int(np.argmax(self.speeds))
@@ -144,7 +144,7 @@ class Ending:
         return float(rate @ (change / self.units) / (rate @ rate) * self.period / self.growth)
 
     def saddles(self) -> tuple[Saddle, ...]:
-        """The equilibria with stable and unstable directions beside which the cycle stays longer and longer, in order along it, the one with the largest share first."""
+        """Return the saddles near which the cycle stays longer and longer, in the order of passage, beginning with the largest share."""
         x, p, sizes, speeds, delays = self.x, self.p, self.sizes, self.speeds, self._delays()
         least = np.flatnonzero((speeds <= np.roll(speeds, 1)) & (speeds < np.roll(speeds, -1)))
         slowest = int(np.argmin(speeds))
@@ -169,7 +169,7 @@ class Ending:
         return tuple(found[longest:] + found[:longest])
 
     def _delays(self) -> np.ndarray:
-        """How the times change along the branch at which the cycle passes the planes across its motion at the nodes, that of one round last."""
+        """Changes along the branch of the times at which the cycle crosses the planes at the nodes; the last entry is T'."""
         problem = self.problem
         f, moved = self.rates / problem.node_scale, self.moved / problem.node_scale
         lengths = self.growth * self.widths + self.period * self.tangent[:-1][problem.held]
@@ -180,7 +180,7 @@ class Ending:
 
 
 def _run(near: np.ndarray, k: int) -> tuple[int, int]:
-    """First and last node of those round node k, on the closed cycle, that are near an equilibrium; the first before and behind it that are not."""
+    """The last node before node k and the first one after it, on the closed cycle, that are not near the equilibrium."""
     away = np.flatnonzero(~near)
     if not len(away):
         return 0, len(near) - 1
@@ -199,7 +199,7 @@ def _shortly(value: complex) -> str:
 def nearby_equilibrium(
     problem: CycleMesh, start: np.ndarray, p: float, sizes: np.ndarray
 ) -> np.ndarray | None:
-    """The equilibrium to which Newton's method leads from a point of a cycle of such sizes; None where that is far away, or none."""
+    """Return the equilibrium to which Newton's method converges from a point of a cycle with these sizes; None if it fails or moves far away."""
     least = problem.flow.settings.rounded
     y = problem.field.rest(start, p, sizes, least, FAR)
     return None if y is None else np.where(np.abs(y) > least * sizes, y, 0.0)

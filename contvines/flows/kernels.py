@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
     Cycles = TypeVar("Cycles", bound=CycleMesh)
 
-SWEEPS = 40  # of Newton's method
-ROUNDS = 8  # of a mesh that is adapted
+SWEEPS = 40  # most steps of Newton's method
+ROUNDS = 8  # most adaptations of the mesh
 
 
 def linearise(data: CycleMesh, u: np.ndarray, p: float, work: CycleWork) -> float:
-    """Residual and derivatives of the collocation equations; the largest residual in units of the rows."""
+    """Evaluate the collocation equations and their derivatives into `work`; return the largest residual in units of the rows (inf: failed)."""
     work.begin()
     with np.errstate(all="ignore"):
         try:
@@ -45,7 +45,7 @@ def bordered(
 
 
 def inspect(data: CycleMesh, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray) -> None:
-    """Multipliers, then margins."""
+    """Write the multipliers, then the margins, into `row`."""
     with np.errstate(all="ignore"):
         try:
             values = work.spectrum()[0]
@@ -57,12 +57,12 @@ def inspect(data: CycleMesh, u: np.ndarray, p: float, work: CycleWork, row: np.n
 
 
 def matrix(data: CycleMesh, work: CycleWork) -> np.ndarray:
-    """F_u written out."""
+    """Return F_u as an array."""
     return work.matrix().toarray() * data.row_scale[:, None] / data.column_scale
 
 
 def flip(data: CycleMesh, work: CycleWork, sign: float) -> None:
-    """Turn the closure of the cycle round (sign = -1), and back (sign = 1): no phase and no period belong to such perturbations."""
+    """Change the closure of the cycle to x_N = -x_0 (sign = -1), or back (sign = 1); with -1 the phase condition and the period drop out."""
     work.closure, work.full = sign, None
     if not data.free_period:
         return
@@ -75,10 +75,10 @@ def flip(data: CycleMesh, work: CycleWork, sign: float) -> None:
 
 
 def transpose(data: CycleMesh, work: CycleWork, column: np.ndarray, other: CycleWork) -> None:
-    """The transposed F_u, with another last column, into another workspace."""
+    """Write the transposed F_u, and another last column, into another workspace."""
     from scipy.sparse import csc_array, diags_array
 
-    # F_u in the user's units, transposed, in units of the scales once more
+    # convert F_u to the user's units, transpose it, and convert it back to units of the scales
     sizes = data.row_scale * data.column_scale
     other.full = csc_array(diags_array(1.0 / sizes) @ work.matrix().T @ diags_array(sizes))
     other.derivative[:] = column
@@ -93,7 +93,7 @@ SPARSE = Kernels(linearise, bordered, inspect, compiled=False, assign=assign, co
 
 # ------------------------------------------------------------------ Newton's method at a fixed parameter
 def solved(problem: CycleMesh, u: np.ndarray, p: float) -> np.ndarray | None:
-    """The cycle near a guess at a fixed parameter; None if Newton's method does not converge."""
+    """Solve for the cycle near a guess at a fixed parameter; None if Newton's method does not converge."""
     n, work = problem.dimension, workspace(problem)
     border, step, tangent = np.zeros((3, n + 1))
     border[n] = 1.0
@@ -105,7 +105,7 @@ def solved(problem: CycleMesh, u: np.ndarray, p: float) -> np.ndarray | None:
         size = float((np.abs(step[:n]) / (problem.column_scale + np.abs(u))).max())
         if not np.isfinite(size) or size > s.diverged:
             return None
-        # far from a solution a part of the step leads further than all of it
+        # far from a solution a damped step is better than a full one
         u += step[:n] * min(1.0, 0.5 / size if size > 0.0 else 1.0)
         if size < s.solved or (size < s.rounded and size > 0.3 * before):
             return u
@@ -114,7 +114,7 @@ def solved(problem: CycleMesh, u: np.ndarray, p: float) -> np.ndarray | None:
 
 
 def settled(problem: Cycles, u: np.ndarray, p: float) -> tuple[Cycles, np.ndarray] | None:
-    """The cycle near a guess on a mesh that suits it, with its problem; None if Newton's method does not converge."""
+    """Solve for the cycle near a guess, adapting and refining the mesh; return its problem and unknowns, or None if Newton's method fails."""
     found = solved(problem, u, p)
     for _ in range(ROUNDS):
         if found is None:

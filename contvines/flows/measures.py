@@ -1,4 +1,4 @@
-"""Names of the states of a flow, and what is measured of equilibria and cycles, with their flow at hand or without."""
+"""Names of states and measures of equilibria and cycles, also for solutions that are loaded without the functions of their flow."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from .mesh import Rule
 
 
-OF_STATES = ("max", "min", "mean")
-TAKEN = ("norm", "period")
-#: of flows whose functions can be imported; others have none
+OF_STATES = ("max", "min", "mean")  # measures of each state along a cycle
+TAKEN = ("norm", "period")  # names of measures, which states cannot have
+#: factory in the description of a flow whose functions can be imported; others have none
 BUILDER = "contvines.flows.files:from_description"
-FINER = 4  # places between two nodes at which the largest value is looked for
+FINER = 4  # places per node spacing at which the curve is evaluated to find its largest value
 
 
 def measured(problem: CycleMesh, names: Sequence[str], u: np.ndarray, p: float) -> list[float]:
-    """Measures of one cycle, in the order of their names."""
+    """Return the named measures of one cycle."""
     x, period, widths = problem.parts(u, p)
     ends = mesh.closed(x)
     result = []
@@ -38,13 +38,13 @@ def measured(problem: CycleMesh, names: Sequence[str], u: np.ndarray, p: float) 
 
 
 def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int) -> float:
-    """The norm of a cycle, or the largest ("max"), smallest ("min") or mean value of its coordinate j.
+    """Return the norm of a cycle, or the largest ("max"), smallest ("min") or mean value of its coordinate j.
 
     Parameters
     ----------
     rule : Rule
     ends : ndarray, shape (N, m + 1, d)
-        Values at the nodes of the intervals, with both ends.
+        Values at all nodes of each interval, both ends included.
     widths : ndarray, shape (N,)
     word : {"norm", "max", "min", "mean"}
     j : int
@@ -60,12 +60,12 @@ def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int)
 
 @cache
 def _between(degree: int) -> np.ndarray:
-    """Matrix from values at the nodes to values at many places in an interval."""
+    """Interpolation matrix from the nodes to equidistant places of an interval."""
     return mesh.rule(degree).interpolation(np.linspace(0.0, 1.0, FINER * degree + 1))
 
 
 def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
-    """The largest value of a piecewise polynomial, from a parabola through the largest of many of its values and those beside it."""
+    """The largest value of a periodic piecewise polynomial: vertex of the parabola through the largest of many values and its neighbours."""
     values = (ends @ _between(rule.degree).T)[:, :-1]
     steps, values = np.repeat(widths / values.shape[1], values.shape[1]), values.reshape(-1)
     k = int(np.argmax(values))
@@ -76,12 +76,12 @@ def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
 
 
 def checked_names(given: Sequence[str] | None, count: int) -> tuple[str, ...]:
-    """The names of so many states: those given, or x0, x1, ...
+    """Return the names of `count` states: the given ones, or x0, x1, ...
 
     Raises
     ------
     ValueError
-        If they are not as many, or one cannot be used.
+        If their number is wrong, or a name cannot be used.
     """
     if given is None:
         return tuple(f"x{j}" for j in range(count))
@@ -105,7 +105,7 @@ class MeasuresWithoutRates:
     states : tuple of str
     rule : Rule
     intervals : int
-        Of the mesh of cycles; 0 of equilibria.
+        Mesh intervals of cycles; 0 for equilibria.
     """
 
     states: tuple[str, ...]
@@ -114,7 +114,7 @@ class MeasuresWithoutRates:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """As with the functions, but for those of the user."""
+        """Names of the measures: those of the flow itself without the user's outputs."""
         each = tuple(f"{what} {state}" for what in OF_STATES for state in self.states)
         if self.intervals:
             return "norm", "period", *each
@@ -122,14 +122,14 @@ class MeasuresWithoutRates:
         return "norm", *unknowns, *self.states, *each, "period"
 
     def __call__(self, name: str, u: np.ndarray) -> np.ndarray:
-        """A measure of solutions, shape (n, N)."""
+        """Return a measure, shape (n,), of solutions u of shape (n, N)."""
         word, _, state = name.rpartition(" ")
         if not self.intervals:
             if name in ("norm", "period"):
                 return np.linalg.norm(u, axis=1) if name == "norm" else np.full(len(u), np.nan)
             return u[:, self.states.index(state) if state in self.states else int(name[1:])].copy()
         n, m, d = self.intervals, self.rule.degree, len(self.states)
-        if name == "period":  # of forced flows it is no unknown
+        if name == "period":  # the period of a forced flow is not an unknown
             free = u.shape[1] > n * m * d + n
             return u[:, n * m * d].copy() if free else np.full(len(u), np.nan)
         j = self.states.index(state) if word else 0
@@ -139,7 +139,7 @@ class MeasuresWithoutRates:
 
 
 def measures_without_rates(description: Mapping[str, Any], unknowns: int) -> MeasuresWithoutRates | None:
-    """What is measured of solutions with so many unknowns whose problem is described so; None if they are not those of a flow."""
+    """Return the measures of solutions with `unknowns` unknowns of a described problem; None if the problem is not one of a flow."""
     flow, cycle = description.get("flow"), description.get("cycle")
     if not isinstance(flow, Mapping) or description.get("factory") not in (None, BUILDER):
         return None

@@ -1,4 +1,4 @@
-"""Gauss collocation on one interval, and meshes of cycles: piecewise polynomials, estimated errors, equidistribution.
+"""Gauss collocation on one interval; piecewise polynomials on the meshes of cycles, their estimated errors, and equidistribution.
 
 Reference: Ascher, Mattheij and Russell, Numerical Solution of Boundary Value Problems (SIAM 1995), chapter 5.
 """
@@ -15,8 +15,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
-EVEN = 0.3  # part of the mean by which the function to be equidistributed is raised, so that intervals do not differ too much
-SLACK = 1.1  # largest over mean share of the error at which a mesh stays as it is
+EVEN = 0.3  # part of its mean that is added to the error density before equidistribution, to limit the ratio of intervals
+SLACK = 1.1  # ratio of the largest to the mean share of the error up to which a mesh is not changed
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class Rule:
     points, weights : ndarray, shape (m,)
         Gauss points and weights.
     values, slopes : ndarray, shape (m, m + 1)
-        From values at the nodes to values and derivatives at the Gauss points.
+        Matrices from values at the nodes to values and derivatives at the Gauss points.
     rates : ndarray, shape (m, m + 1)
-        From values at the nodes to derivatives at all nodes but the last.
+        Matrix from values at the nodes to derivatives at all nodes except the last.
     barycentric : ndarray, shape (m + 1,)
-        Weights of the interpolation formula.
+        Weights of the barycentric interpolation formula.
     top : ndarray, shape (m + 1,)
-        From values at the nodes to the m-th derivative, a constant.
+        Weights of the values at the nodes in the m-th derivative, a constant.
     constant : float
-        Largest error of the polynomial is ``constant * h^(m + 1) * |x^(m + 1)|``.
+        The largest error of the polynomial is ``constant * h^(m + 1) * |x^(m + 1)|``.
     """
 
     nodes: np.ndarray
@@ -53,30 +53,30 @@ class Rule:
 
     @property
     def degree(self) -> int:
-        """m."""
+        """Degree m."""
         return len(self.points)
 
     @property
     def resolved(self) -> float:
-        """Size of z = h lambda from which on R(z) has no zeros and poles, and comes nearer to 1 in size the larger z is.
+        """Largest |z| = |h lambda| that an interval resolves; for larger z, |R(z)| tends to 1, see `stability`.
 
-        Its zeros and poles are smaller than 2 m + 4 / 3: Saff and Varga, in Pade and Rational Approximation (1977), p. 195.
+        All zeros and poles of R lie within |z| < 2 m + 4 / 3: Saff and Varga, in Pade and Rational Approximation (1977), p. 195.
         """
         return 2.0 * (self.degree + 2.0 / 3.0)
 
     def stability(self, z: np.ndarray) -> np.ndarray:
-        """R(z), what collocation makes of x' = lambda x in an interval of length h, for z = h lambda: Pade's approximant of exp(z)."""
+        """Return R(z), the growth of x' = lambda x over an interval of length h by collocation, z = h lambda: the Pade approximant of exp(z)."""
         m = self.degree
         terms = [factorial(2 * m - k) / (factorial(k) * factorial(m - k)) for k in range(m, -1, -1)]
         return np.polyval(terms, z) / np.polyval(terms, -z)
 
     def blocks(self, jacobian: np.ndarray) -> np.ndarray:
-        """Derivatives of the equations of intervals by the values at their nodes, shape (N, m d, (m + 1) d).
+        """Return the derivatives of the collocation equations by the values at the nodes of their interval, shape (N, m d, (m + 1) d).
 
         Parameters
         ----------
         jacobian : ndarray, shape (N m, d, d)
-            Of the rates at the Gauss points, times the length of the interval.
+            df/dx at the Gauss points, times the length of the interval.
         """
         m, d = self.degree, jacobian.shape[-1]
         found = -np.einsum("cj,icab->icajb", self.values, jacobian.reshape(-1, m, d, d))
@@ -85,7 +85,7 @@ class Rule:
         return found.reshape(-1, m * d, (m + 1) * d)
 
     def interpolation(self, places: np.ndarray) -> np.ndarray:
-        """Matrix from values at the nodes to values at some places in [0, 1], shape (len(places), m + 1)."""
+        """Return the matrix from values at the nodes to values at places in [0, 1], shape (len(places), m + 1)."""
         gaps = np.asarray(places, dtype=float)[:, None] - self.nodes
         hit = gaps == 0.0
         gaps[hit] = 1.0
@@ -97,7 +97,7 @@ class Rule:
 
 @lru_cache(maxsize=16)
 def rule(degree: int) -> Rule:
-    """The rule of a degree.
+    """Return the rule of a degree.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def rule(degree: int) -> Rule:
             basis.deriv()(nodes[:-1]),
         )
         top[j] = factorial(m) * barycentric[j]
-    # the error of Gauss collocation begins with the integral of the polynomial that vanishes at the Gauss points
+    # the leading error of Gauss collocation is the integral of the polynomial that vanishes at the Gauss points
     kernel = Polynomial.fromroots(points).integ()
     constant = float(np.abs(kernel(np.linspace(0.0, 1.0, 401)) - kernel(0.0)).max()) / factorial(m)
     return Rule(nodes, points, weights, values, slopes, rates, barycentric, top, constant)
@@ -130,18 +130,18 @@ def rule(degree: int) -> Rule:
 
 # ------------------------------------------------------------------ piecewise polynomials
 def closed(x: np.ndarray) -> np.ndarray:
-    """Values at all nodes of each interval, shape (..., N, m + 1, d), from those without the last one, (..., N, m, d)."""
+    """Append the last node (the first of the next interval) to each interval: shape (..., N, m + 1, d) from (..., N, m, d)."""
     after = np.concatenate([x[..., 1:, :1, :], x[..., :1, :1, :]], axis=-3)
     return np.concatenate([x, after], axis=-2)
 
 
 def at_gauss_points(matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Values, or derivatives, at the Gauss points of all intervals, shape (N m, d), from those at the nodes, (N, m, d)."""
+    """Return values, or derivatives, at the Gauss points of all intervals, shape (N m, d), from values at the nodes, shape (N, m, d)."""
     return np.matmul(matrix, closed(x)).reshape(-1, x.shape[-1])
 
 
 def phase_row(rule: Rule, widths: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, float]:
-    """Row of the phase condition, shape (N, m d), from rates at the Gauss points, (N, m, d), and the length that it had."""
+    """Return the normalised row of the phase condition, shape (N, m d), and its original length, from rates at the Gauss points, shape (N, m, d)."""
     row = np.matmul(rule.values.T, (widths[:, None] * rule.weights)[:, :, None] * rates)
     row[1:, 0] += row[:-1, -1]
     row[0, 0] += row[-1, -1]
@@ -151,22 +151,22 @@ def phase_row(rule: Rule, widths: np.ndarray, rates: np.ndarray) -> tuple[np.nda
 
 
 def halved(rule: Rule, x: np.ndarray) -> np.ndarray:
-    """The same curve, or curves, with every interval halved, shape (..., 2 N, m, d)."""
+    """Return the same curve, or curves, on a mesh with every interval halved, shape (..., 2 N, m, d)."""
     places = 0.5 * rule.nodes[:-1]
     matrix = rule.interpolation(np.concatenate([places, 0.5 + places]))
     ends = closed(x)[..., None, :]
-    # a sum of products in this order: one of many curves comes out as it would alone, to the last bit
+    # a sum in this order gives the same result for one curve and for one of many, to the last bit
     found = sum(matrix[:, j, None] * ends[..., j, :, :] for j in range(rule.degree + 1))
     return np.reshape(found, (*x.shape[:-3], 2 * x.shape[-3], *x.shape[-2:]))
 
 
 def evaluate(rule: Rule, widths: np.ndarray, x: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """A periodic piecewise polynomial at places in units of the period, shape (len(places), d)."""
+    """Evaluate a periodic piecewise polynomial at places in units of the period, shape (len(places), d)."""
     return reading(rule, widths, places)(x)
 
 
 def reading(rule: Rule, widths: np.ndarray, places: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """What evaluates all periodic piecewise polynomials of one mesh at the same places."""
+    """Return a function that evaluates periodic piecewise polynomials on this mesh at these places."""
     edges = np.append(0.0, np.cumsum(widths))
     edges /= edges[-1]
     places = np.mod(places, 1.0)
@@ -176,34 +176,35 @@ def reading(rule: Rule, widths: np.ndarray, places: np.ndarray) -> Callable[[np.
 
 
 def places(widths: np.ndarray, inside: np.ndarray) -> np.ndarray:
-    """Places at these parts of each interval, in units of the period, shape (N len(inside),)."""
+    """Return the places at the fractions `inside` of each interval, in units of the period, shape (N len(inside),)."""
     begins = np.append(0.0, np.cumsum(widths)[:-1])
     return (begins[:, None] + widths[:, None] * inside).reshape(-1)
 
 
 def phases(widths: np.ndarray, inside: np.ndarray, copies: int, rounds: int) -> np.ndarray:
-    """Places at these parts of each interval of a mesh of equal copies, as times in one period of a forcing that goes round so often, shape (N len(inside),).
+    """Return the phases of a forcing, in units of its period, at the fractions `inside` of each interval, shape (N len(inside),).
 
-    They are the same to the last bit wherever the mesh and the forcing repeat, so that a cycle which repeats a shorter one solves the equations exactly as that does.
+    The mesh consists of `copies` equal parts, and the cycle covers `rounds` periods of the forcing. Where both repeat, the phases are equal to the
+    last bit, so that a cycle which repeats a shorter one solves the same equations exactly.
     """
     parts = math.gcd(copies, rounds)
     return np.tile(np.mod(rounds * places(widths[: len(widths) // parts], inside), 1.0), parts)
 
 
 def node_places(rule: Rule, widths: np.ndarray) -> np.ndarray:
-    """Places of the nodes, the last one of each interval left out, in units of the period, shape (N m,)."""
+    """Return the places of the nodes, without the last one of each interval, in units of the period, shape (N m,)."""
     return places(widths, rule.nodes[:-1])
 
 
 def alike(rule: Rule, widths: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
-    """Cosine of the angle between the directions of motion along two curves on one mesh, in the mean over the period."""
+    """Return the cosine of the angle between the velocities of two curves on one mesh, with the inner product averaged over the period."""
     roots = np.sqrt(rule.weights / widths[:, None])[:, :, None]
     a, b = (roots * np.matmul(rule.slopes, closed(z)) for z in (x, y))
     return float(np.vdot(a, b) / np.sqrt(np.vdot(a, a) * np.vdot(b, b)))
 
 
 def along_data(times: np.ndarray, states: np.ndarray, count: int, copies: int) -> np.ndarray:
-    """Widths of so many intervals on which time and the length of a curve through data grow alike; the mesh consists of equal copies."""
+    """Return the widths of `count` intervals, each with an equal share of time plus arclength of a curve through data; the mesh consists of equal copies."""
     parts = 20 * count
     places = np.linspace(times[0], times[-1], parts + 1)
     curve = np.column_stack([np.interp(places, times, column) for column in states.T])
@@ -216,7 +217,7 @@ def along_data(times: np.ndarray, states: np.ndarray, count: int, copies: int) -
 
 
 def with_equal_halves(widths: np.ndarray) -> np.ndarray:
-    """Widths of twice as many intervals, the same ones in both halves of the period, each where either half has one at hand."""
+    """Return the widths of a mesh with twice as many intervals and two equal halves, each as fine as both old halves together."""
     number, places = np.arange(len(widths) + 1.0), np.append(0.0, np.cumsum(widths))
     here = np.unique(np.clip(np.concatenate([places, places - 0.5, [0.5]]), 0.0, 0.5))
     passed = np.interp(here, places, number) + np.interp(here + 0.5, places, number)
@@ -224,7 +225,7 @@ def with_equal_halves(widths: np.ndarray) -> np.ndarray:
 
 
 def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """|x^(m + 1)|^(1 / (m + 1)) on each interval, in units of the period and the scale, from jumps of the m-th derivative."""
+    """Return |x^(m + 1)|^(1 / (m + 1)) on each interval, in units of the period and the scale, estimated from jumps of the m-th derivative."""
     m = rule.degree
     ring = np.arange(-1, len(widths) + 1) % len(widths)  # each interval with its neighbours
     w = widths[ring, None]
@@ -234,7 +235,7 @@ def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) ->
 
 
 def error(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> float:
-    """Estimated largest error of the curve between the mesh points, in units of the scale."""
+    """Estimate the largest error of the curve between the mesh points, in units of the scale."""
     share = density(rule, widths, x, scale) * widths
     return float(rule.constant * share.max() ** (rule.degree + 1))
 
@@ -242,12 +243,12 @@ def error(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> f
 def equidistributed(
     rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray, copies: int = 1
 ) -> np.ndarray | None:
-    """Widths of as many intervals with equal shares of the error; None where those at hand are good enough.
+    """Return the widths of the same number of intervals with equal shares of the error; None if the given ones are good enough.
 
     Parameters
     ----------
     copies : int
-        The mesh consists of so many equal parts, one after the other.
+        Number of equal parts of which the mesh consists.
     """
     own = density(rule, widths, x, scale)
     mean = float((own * widths).sum())

@@ -1,10 +1,14 @@
-"""Meshes that move along with a cycle: of all directions that change a curve alike, the one along which its nodes move least.
+"""Moving meshes: among all directions of the unknowns with the same change of the curve, the one with the smallest change of the nodes.
 
-Where fast parts of a cycle come earlier or later as a parameter changes, values at places that stand still change by the whole height of a jump, although
-the curve hardly changes at all. To first order a direction (dx, dw) of nodes and widths changes the curve as (dx + x' xi, dw + xi_(i+1) - xi_i) does,
-for any displacements xi of the mesh points in time, linear in between. Those are taken that make least the sum of the squares of what nodes move in
-units of the size of the cycle (beside what moves and stretches its whole range), and of STIFFNESS times the mean square of xi' for each of them. Every
-mesh point shares terms with its neighbours only: a system with three entries in a row, closed to a ring.
+If a fast part of a cycle occurs earlier or later as a parameter changes, values at fixed places change by the whole height of a jump, although
+the curve itself hardly changes. To first order, a direction (dx, dw) of nodes and widths has the same effect on the curve as
+(dx + x' xi, dw + xi_(i+1) - xi_i), for any displacements xi of the mesh points in time, linear in between. The xi are chosen to minimise the
+sum over the nodes of
+
+- the squared change of a node in units of the size of the cycle, without the part that shifts or stretches the whole range of a coordinate, and
+- STIFFNESS times the mean square of xi'.
+
+Each mesh point is coupled only to its neighbours: a periodic tridiagonal system.
 """
 
 from __future__ import annotations
@@ -16,25 +20,25 @@ from ..core.records import pack, place
 from . import mesh
 from .mesh import Rule
 
-STIFFNESS = 0.3  # with less, meshes lose their shares of the error; with more, they stand still
-FEWEST = 3  # intervals of a ring
+STIFFNESS = 0.3  # weight of the mesh's deformation: a smaller one spoils the equidistribution, a larger one keeps the mesh fixed
+FEWEST = 3  # fewest intervals of a mesh that moves
 
 
 class MovingMesh:
-    """What steers a direction of the unknowns of cycles: nodes (N, m, d), the period where it is unknown, widths (N,), and the parameter.
+    """Changes directions of the unknowns of cycles: nodes (N, m, d), the period if it is unknown, widths (N,), and the parameter.
 
     Parameters
     ----------
     rule : Rule
     count : int
-        Intervals, N.
+        Number of intervals N.
     free : int
-        1 where the period is an unknown; else the first mesh point stays where it is, as time is given.
+        1 if the period is an unknown; 0 for forced flows, whose first mesh point is fixed.
     copies : int
-        The mesh consists of so many equal parts, one after the other, and goes on to do so.
+        Number of equal parts of the mesh; they remain equal.
     scale : ndarray, shape (d,)
     least : float
-        Size of a cycle, in units of the scale, below which its mesh stands still: what rests has no fast parts.
+        Size of a cycle, in units of the scale, below which its mesh is fixed: a cycle almost at rest has no fast parts.
     """
 
     def __init__(
@@ -51,14 +55,14 @@ class MovingMesh:
             self._steer = function("core_cycle_steer", NOTHING, *[POINTER] * 4)
 
     def steer(self, u: np.ndarray, tangent: np.ndarray, row: np.ndarray | None = None) -> None:
-        """Change a direction in place.
+        """Change a direction in place to the one with the smallest change of the nodes.
 
         Parameters
         ----------
         u : ndarray, shape (unknowns,)
         tangent : ndarray, shape (unknowns + 1,)
         row : ndarray, shape (N m d,), optional
-            Row of the phase condition, in units of the scale: the direction of the nodes becomes orthogonal to it.
+            Row of the phase condition, in units of the scale; the direction is made orthogonal to it.
         """
         if self.count // self.copies < FEWEST:
             return
@@ -81,7 +85,7 @@ class MovingMesh:
         tangent[n + self.free : -1] += dw
 
     def stand(self, u: np.ndarray, tangent: np.ndarray, row: np.ndarray | None = None) -> None:
-        """Change a direction in place to the one that changes the curve alike on a mesh that stands where it is; see :meth:`steer`."""
+        """Change a direction in place to the one with the same change of the curve on a fixed mesh; see :meth:`steer`."""
         n, widths = self.states, u[self.states + self.free :]
         x, dw = u[:n].reshape(self.count, self.rule.degree, -1) / self.scale, tangent[n + self.free : -1]
         moved = (np.cumsum(dw) - dw)[:, None] + self.rule.nodes[:-1] * dw[:, None]
@@ -103,13 +107,13 @@ class MovingMesh:
     def _displacements(
         self, x: np.ndarray, dx: np.ndarray, slopes: np.ndarray, widths: np.ndarray
     ) -> np.ndarray:
-        """Displacements of the mesh points in time, shape (N,)."""
+        """Optimal displacements xi of the mesh points in time, shape (N,)."""
         from scipy.linalg import solveh_banded
 
         count, m, d = x.shape
         n, inside = count // self.copies, self.rule.nodes[:-1]
         squares, products = (slopes**2).sum(axis=2), (slopes * self._of_shape(x, dx, widths)).sum(axis=2)
-        # by the displacements of the left and of the right mesh point of each interval
+        # quadratic form of each interval in the displacements of its left and right mesh points
         weights = np.stack([(1.0 - inside) ** 2, inside * (1.0 - inside), inside**2], axis=1)
         sums = np.column_stack([squares @ weights, products @ (1.0 - inside), products @ inside])
         left, both, right, here, there = sums.reshape(self.copies, n, 5).sum(axis=0).T
@@ -117,14 +121,14 @@ class MovingMesh:
         stiff = STIFFNESS * size**2 * count * m * d * (1.0 / widths.reshape(self.copies, n)).sum(axis=0)
         diagonal = left + stiff + np.roll(right + stiff, 1)
         beside, wanted = both - stiff, -here - np.roll(there, 1)
-        # the others in terms of the first mesh point, which closes the ring
+        # express the others by the first mesh point, which closes the ring
         sides = np.zeros((n - 1, 2))
         sides[:, 0] = wanted[1:]
         sides[0, 1] -= beside[0]
         sides[-1, 1] -= beside[-1]
         try:
             found = solveh_banded(np.stack([diagonal[1:], np.append(beside[1:-1], 0.0)]), sides, lower=True)
-        except (np.linalg.LinAlgError, ValueError):  # nothing moves, or nothing is finite
+        except (np.linalg.LinAlgError, ValueError):  # the cycle is at rest, or a number is not finite
             return np.zeros(count)
         first = 0.0
         if self.free:
@@ -133,10 +137,10 @@ class MovingMesh:
         return np.tile(np.append(first, found[:, 0] + first * found[:, 1]), self.copies)
 
     def _of_shape(self, x: np.ndarray, dx: np.ndarray, widths: np.ndarray) -> np.ndarray:
-        """What is left of a direction without what moves and stretches the whole range of each coordinate: cycles that grow keep their mesh."""
+        """Remove from a direction the shift and stretch of the whole range of each coordinate, so that a growing cycle keeps its mesh."""
         flat, change, each = x.reshape(-1, x.shape[2]), dx.reshape(-1, x.shape[2]), np.arange(x.shape[2])
         gaps = (np.diff(self.rule.nodes) * widths[:, None]).reshape(-1)
-        # means over the equal parts of the mesh: which one of them has the outermost node may change
+        # means over the equal parts of the mesh, since the part that contains the outermost node may change
         parts = flat.reshape(self.copies, -1, x.shape[2])
         first = np.arange(self.copies)[:, None] * parts.shape[1]
         low, moved, high, raised = (
@@ -152,7 +156,7 @@ class MovingMesh:
 def _at_extreme(
     flat: np.ndarray, change: np.ndarray, gaps: np.ndarray, k: np.ndarray, each: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Extreme values and how they change, on parabolas through the outermost nodes k and their neighbours: nodes pass an extreme, these do not jump there."""
+    """Extreme values and their changes, by parabolas through the outermost nodes k and their neighbours, so that they are continuous when another node becomes outermost."""
     before, after = (k - 1) % len(flat), (k + 1) % len(flat)
     back, on = gaps[before], gaps[k]
 

@@ -1,4 +1,4 @@
-"""CycleOrbit: one cycle, as users hold it."""
+"""CycleOrbit: one cycle of a flow, for users."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
     from .field import Field
 
-SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
+# parts of the cycle that are simulated separately, to limit the growth of unstable perturbations
+SEGMENTS = 8
 
 
 class PictureOptions(TypedDict, total=False):
@@ -43,7 +44,7 @@ class PictureOptions(TypedDict, total=False):
 
 
 class MotionOptions(TypedDict, total=False):
-    """Options of a cycle in motion; see :func:`contvines.plots.cycles.animate_cycle`."""
+    """Options of an animation of a cycle; see :func:`contvines.plots.cycles.animate_cycle`."""
 
     seconds: float
     rate: int
@@ -58,15 +59,15 @@ class CycleOrbit:
     Attributes
     ----------
     times : ndarray, shape (n,)
-        From 0 to the period.
+        Times of the mesh points and nodes, from 0 to the period.
     states : ndarray, shape (n, d)
     period : float
     parameters : dict of float
     multipliers : ndarray of complex
-        Of autonomous flows without the trivial one.
+        For autonomous flows without the trivial one.
     stable : bool or None
     marginal : bool
-        Whether it is that of a special point, at which a multiplier is on the unit circle by definition.
+        Whether it belongs to a special point, at which a multiplier lies on the unit circle by definition.
     """
 
     marginal = False
@@ -89,14 +90,14 @@ class CycleOrbit:
         )
 
     def __call__(self, t: ArrayLike) -> np.ndarray:
-        """States at times, shape (..., d)."""
+        """Return the states at times, shape (..., d)."""
         t = np.asarray(t, dtype=float)
         x, _, widths = self._problem.parts(self.u, self.value)
         found = mesh.evaluate(self._problem.rule, widths, x, t.reshape(-1) / self.period)
         return found.reshape(*t.shape, self._problem.node)
 
     def to_dict(self) -> dict[str, Any]:
-        """The cycle as JSON-able dict."""
+        """Return the cycle as a JSON-able dict."""
         return {
             "period": self.period,
             "stable": self.stable,
@@ -118,12 +119,12 @@ class CycleOrbit:
 
     @property
     def multipliers(self) -> np.ndarray:
-        """Multipliers of the full period, without the trivial one of autonomous flows."""
+        """Multipliers over one period, for autonomous flows without the trivial one."""
         return self._spectrum[0]
 
     @cached_property
     def _finer(self) -> tuple[float, np.ndarray]:
-        """Period and multipliers on a mesh with intervals half as long, or nan."""
+        """Period and multipliers on a mesh with halved intervals; NaN if Newton's method fails there."""
         problem, nothing = self._problem, np.full(len(self.multipliers), np.nan + 0j)
         u = problem.halved(self.u)
         finer = problem.with_unknowns(u, self.value, 2 * problem.intervals, problem.copies)
@@ -135,25 +136,25 @@ class CycleOrbit:
 
     @property
     def period_error(self) -> float:
-        """Error of the period: the difference to a mesh with intervals half as long, which is the error to 4^-degree of it, taken twice."""
+        """Estimated error of the period: twice the difference from a mesh with halved intervals, where the error is smaller by the factor 4^-degree."""
         return 2.0 * abs(self._finer[0] - self.period)
 
     @property
     def multiplier_errors(self) -> np.ndarray:
-        """Error of each multiplier, in the same way."""
+        """Estimated error of each multiplier, as `period_error`."""
         apart = np.abs(self.multipliers[:, None] - self._finer[1])
         return 2.0 * apart.min(axis=1, initial=np.inf)
 
     @property
     def trivial_error(self) -> float:
-        """By how much the trivial multiplier, as computed, misses 1: a measure of the error of the others."""
+        """Distance of the computed trivial multiplier from 1, a measure of the error of the others."""
         return self._spectrum[1]
 
     @property
     def volume_error(self) -> float:
-        """By how much the logarithm of the product of all multipliers misses the integral of the trace of the Jacobian (Liouville).
+        """Distance of the logarithm of the product of all multipliers from the integral of the trace of the Jacobian (Liouville).
 
-        It is large where a cycle is so stiff that collocation contracts less than the flow does. Zero of sparse flows, where not all are known.
+        It is large for stiff cycles, where collocation contracts less than the flow. Zero for sparse flows, where not all multipliers are known.
         """
         if self._problem.sparse is not None:
             return 0.0
@@ -163,12 +164,12 @@ class CycleOrbit:
 
     @property
     def stable(self) -> bool | None:
-        """Whether all multipliers are inside the unit circle; at special points None, unless one is outside."""
+        """Whether all multipliers are inside the unit circle; at a special point None, unless one is outside."""
         sizes = np.abs(self.multipliers)
         return attracts(sizes, 1.0) if self.marginal else bool((sizes < 1.0).all())
 
     def critical(self, near: float) -> CycleOrbit:
-        """The same cycle as that of a special point, where a multiplier is on the unit circle by definition: the nearest, if it is so near."""
+        """Return the cycle as that of a special point: the multiplier nearest to the unit circle is moved onto it, if it is nearer than `near`."""
         found = copy(self)
         vars(found)["_spectrum"] = (onto_circle(self.multipliers, near), self.trivial_error)
         found.marginal = True
@@ -176,21 +177,21 @@ class CycleOrbit:
 
     @property
     def estimated_error(self) -> float:
-        """Estimated largest error between the mesh points, relative to the size of the cycle."""
+        """Estimated largest error of the curve between the mesh points, relative to the size of the cycle."""
         return self._problem.estimated_error(self.u)
 
     # ------------------------------------------------------------------ as a seed
     def problem(self, parameter: str) -> CycleMesh:
-        """The cycles that go on from this one when a parameter varies."""
+        """Return the problem of cycles with this start and a varying parameter."""
         return self._problem.against(parameter, self.parameters)
 
     def seed(self, problem: Problem) -> tuple[np.ndarray, float]:
-        """The unknowns, and the value of the parameter that varies."""
+        """Return the unknowns, and the value of the varying parameter."""
         return self.u, self.parameters[problem.parameter]
 
-    # ------------------------------------------------------------------ by other means
+    # ------------------------------------------------------------------ comparison with simulations
     def replay(self) -> float:
-        """Largest distance of a simulation (scipy's DOP853) from the cycle, relative to its scale; it begins anew eight times along the cycle."""
+        """Return the largest distance of simulations (scipy's DOP853) from the cycle, relative to its scale; each covers an eighth of the period."""
         worst, field = 0.0, self._problem.field
         edges = np.linspace(0.0, self.period, SEGMENTS + 1)
         for start, stop in pairwise(edges):
@@ -200,11 +201,12 @@ class CycleOrbit:
         return worst
 
     def simulated_multipliers(self) -> np.ndarray:
-        """Multipliers from the variational equations, integrated along simulations (scipy's DOP853), the trivial one included; largest first.
+        """Compute the multipliers from the variational equations along simulations (scipy's DOP853), with the trivial one; largest first.
 
-        Each simulation begins on the cycle and lasts until one perturbation has grown `spread` times as much as another (:class:`contvines.flows.FlowSettings`), at most an eighth of the period;
-        the multipliers are those of the product of all, from its factors. So 1e+30 and 1e-30 are right beside each other. Of sparse flows growth alone ends
-        a simulation: their multipliers below 1e-8 are not known.
+        Each simulation begins on the cycle. It ends when one perturbation has grown `spread` times as much as another
+        (:class:`contvines.flows.FlowSettings`), at the latest after an eighth of the period. The multipliers are those of the product of all their
+        derivatives, computed from the factors, so that 1e+30 and 1e-30 can both be accurate. For sparse flows only the growth is limited, and
+        multipliers below 1e-8 are not accurate.
 
         Raises
         ------
@@ -219,7 +221,7 @@ class CycleOrbit:
         )
 
     def _flights(self, times: np.ndarray, x: np.ndarray) -> list[np.ndarray]:
-        """Derivatives of a simulation from a state, in parts that are short enough, cut at mesh points while there are some."""
+        """Derivatives of simulations from a state through these times; halved, at mesh points first, until the spread is small enough."""
         field, scale = self._problem.field, self._problem.node_scale
         matrix = variational(field, self.value, x, times[0], times[-1])[1]
         if not np.isfinite(matrix).all():
@@ -245,14 +247,14 @@ class CycleOrbit:
         return plot_cycle(self, **options)
 
     def animate(self, path: str | Path | None = None, **options: Unpack[MotionOptions]) -> FuncAnimation:
-        """The cycle in motion, written to a gif, mp4 or html file if a path is given; see :func:`contvines.plots.cycles.animate_cycle`."""
+        """Animate the cycle, and write a gif, mp4 or html file if a path is given; see :func:`contvines.plots.cycles.animate_cycle`."""
         from ..plots.cycles import animate_cycle
 
         return animate_cycle(self, path, **options)
 
 
 def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float) -> np.ndarray:
-    """The state at another time; NaN where the integrator fails."""
+    """Integrate a state from one time to another; NaN if the integrator fails."""
     from scipy.integrate import solve_ivp
 
     s = field.settings
@@ -264,7 +266,7 @@ def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float)
 def variational(
     field: Field, p: float, x: np.ndarray, start: float, stop: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The state at another time and its derivative by the first one; NaN where the integrator fails."""
+    """Integrate a state from one time to another, with its derivative by the initial state; NaN if the integrator fails."""
     from scipy.integrate import solve_ivp
 
     d = len(x)

@@ -1,4 +1,4 @@
-"""Many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.problems.abilities.Population`."""
+"""FlowPopulation: many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.problems.abilities.Population`."""
 
 from __future__ import annotations
 
@@ -23,34 +23,30 @@ if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
     from .orbit import CycleOrbit
 
-BLOCK, STEPS = (
-    200,
-    (2, 10, 27),
-)  # steps of the integration, and how often so many, for those that have settled on nothing before
-BLOCK_PERIODS, PERIODS = 20, (2, 10, 27)  # likewise, periods of a forcing
-MOST_STEPS = 20000  # in so many periods
-PER_PERIOD = 30  # steps that count as a period in the budget of an atlas
-LONGEST = 16  # returns, or periods of the forcing, after which a motion is taken to be irregular
-DOUBLINGS = 4  # of the transient of a motion that is looked at by itself
-BRIEF = (3, 12)  # values, and starts at each, of a brief look
-TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looked at by themselves
-AGAIN = (
-    2,
-    4,
-    np.inf,
-)  # motions solved for though known, after which others are left to come nearer by themselves
-GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
-BLOCKS = 20
-FEW = 8  # motions at least, copies of those there are ...
+# starts are integrated in three rounds; between them Newton's method tries to recognise what they settle on
+BLOCK, STEPS = 200, (2, 10, 27)  # integrator steps of a block, and blocks of each round
+# the same for forced flows: forcing periods of a block, and blocks of each round
+BLOCK_PERIODS, PERIODS = 20, (2, 10, 27)
+MOST_STEPS = 20000  # most integrator steps of a block of forcing periods
+PER_PERIOD = 30  # integrator steps that count as one period in the budget of an atlas
+LONGEST = 16  # most returns, or forcing periods, of a cycle; a longer motion counts as irregular
+DOUBLINGS = 4  # doublings of the transient when a single motion is simulated until it recurs
+BRIEF = (3, 12)  # parameter values, and starts at each, of a brief search
+TRIED = (4, 2, 2)  # most failures to recognise a motion in each round
+# most solutions that turn out to be known in each round; later rounds see the starts nearer to them
+AGAIN = (2, 4, np.inf)
+GROWTH = 4000  # time over which the growth of perturbations is averaged, in time scales of the motion
+BLOCKS = 20  # parts of that time, whose scatter gives the error of the mean
+FEW = 8  # fewest motions in that average; if there are fewer, copies of them are added
 
 
 @dataclass(frozen=True, eq=False)
 class Settled(Motion["AlgebraicProblem | CycleMesh"]):
-    """What some starts settle on."""
+    """A motion on which starts settle."""
 
-    curve: np.ndarray | None = field(default=None, repr=False)  # states on it
+    curve: np.ndarray | None = field(default=None, repr=False)  # states on the motion
     image: np.ndarray | None = field(default=None, repr=False)  # states on its mirror image
-    size: np.ndarray | float = field(default=0.0, repr=False)  # range of each state along it
+    size: np.ndarray | float = field(default=0.0, repr=False)  # range of each state along the motion
 
 
 class FlowPopulation(StartsInBox):
@@ -61,11 +57,11 @@ class FlowPopulation(StartsInBox):
     flow : FlowProblem
     parameter : str
     values : mapping of str to float
-        Of the other parameters.
+        Values of the other parameters.
     box : sequence of (low, high), optional
-        One pair per state; by default the flow's own one, or else round its start, and round ``around``.
+        One pair per state; by default the flow's box or, if it has none, a box around its start and ``around``.
     around : ndarray, shape (n, d), optional
-        States of a motion that is known.
+        States of a known motion.
     """
 
     across = 60
@@ -94,19 +90,19 @@ class FlowPopulation(StartsInBox):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the states."""
+        """Names of the states."""
         return self.flow.states
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts, shape (count, d)."""
+        """Return low-discrepancy starts in the box, shape (count, d)."""
         return self._box[:, 0] + low_discrepancy(self.node, count, seed) * self.size
 
-    # ------------------------------------------------------------------ what attracts
+    # ------------------------------------------------------------------ attractors
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Settled], np.ndarray, np.ndarray]:
-        """Integrate all starts and recognise what they settle on."""
+        """Integrate all starts and recognise the motions they settle on; return (motions, index, mirrored)."""
         try:
             period = float(self.field.length_of_period(p)) if self.field.forced else None
-        except NotEvaluable:  # there is no forcing with such parameters
+        except NotEvaluable:  # the period is not positive for these parameters
             return [Settled("escaped")], np.zeros(len(starts), dtype=int), np.zeros(len(starts), dtype=bool)
         found = Settling(self, np.asarray(starts, dtype=float), p)
         found.go(period)
@@ -114,7 +110,10 @@ class FlowPopulation(StartsInBox):
         return found.motions, found.index, found.mirrored
 
     def on(self, x: np.ndarray, curve: np.ndarray, size: np.ndarray | float) -> np.ndarray:
-        """Which states lie on a curve of a motion of such a size, of one point or of many that follow each other round it (in forced flows: apart)."""
+        """Return which states lie on a motion of a given size.
+
+        `curve` has one state, or many in order along a closed curve; of forced flows it has separate points.
+        """
         s = self.field.settings
         size = np.maximum(size, s.smallest * self.size)
         near = np.zeros(len(x), dtype=bool)
@@ -129,7 +128,16 @@ class FlowPopulation(StartsInBox):
         return near
 
     def solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
-        """The equilibrium or cycle on which the motion from a state settles, which came some way; None where it is neither, or not soon."""
+        """Solve for the equilibrium or cycle on which the motion from a state settles; None if there is none.
+
+        Parameters
+        ----------
+        x : ndarray, shape (d,)
+            Last state of the motion.
+        way : sequence of Place
+            Earlier states, which may already contain a period of a cycle.
+        p : float
+        """
         if not self.field.forced:
             rest = self._rest(x, p)
             near = rest is not None and np.abs((rest - x) / self.size).max() <= self.field.settings.near
@@ -167,7 +175,7 @@ class FlowPopulation(StartsInBox):
         )
 
     def _recurring(self, way: Sequence[Place], values: Mapping[str, float], p: float) -> CycleOrbit | None:
-        """The stable cycle along which a motion has gone round already; None if it has not."""
+        """The stable cycle that a motion has already followed for a period; None if there is none."""
         last = last_round(self.field, p, way, LONGEST)
         if last is None:
             return None
@@ -178,7 +186,7 @@ class FlowPopulation(StartsInBox):
         return orbit if orbit.stable else None
 
     def _equilibrium(self, x: np.ndarray | None, p: float) -> Settled | None:
-        """The equilibrium at a state, if it attracts."""
+        """The equilibrium at a state as a motion, if it is stable; else None."""
         if x is None or not (np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all():
             return None
         image = None if self.flow.mirror is None else self.flow.mirrored(x[None])
@@ -190,11 +198,11 @@ class FlowPopulation(StartsInBox):
         return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p})
 
     def _rest(self, x: np.ndarray, p: float) -> np.ndarray | None:
-        """The equilibrium next to a state; None if there is none."""
+        """The equilibrium to which Newton's method leads from a state; None if it fails."""
         return self.field.rest(np.asarray(x, dtype=float), p, self.size, self.field.settings.solved)
 
     def irregular(self, x: np.ndarray, p: float) -> Settled:
-        """Motions that do not recur, judged by the growth of vectors along them; motions and blocks of time give the error of the mean."""
+        """Classify motions that do not recur by their largest Lyapunov exponent, from the growth of perturbations; the scatter over motions and blocks of time gives its error."""
         d, count = self.node, max(len(x), FEW)
         states = x[np.arange(count) % len(x)]
         rng = np.random.default_rng(2)
@@ -219,24 +227,23 @@ class FlowPopulation(StartsInBox):
                 march.slope[:, d:] /= sizes[:, None]
         except (ValueError, NotEvaluable):
             return Settled("slow", state=x[0])
-        found = np.concatenate(logs[1:])  # in the first block vectors turn to where they grow
+        # during the first block the perturbations turn into the direction of growth
+        found = np.concatenate(logs[1:])
         mean, error = mean_of_blocks(found, len(found))
         if not np.isfinite(mean):
             return Settled("slow", state=x[0])
-        room = (
-            d + self.field.forced >= 3
-        )  # for two frequencies, or chaos: not in the plane (Poincare and Bendixson)
-        return Settled(
-            wandering(mean, error, room) if room else "slow", exponent=mean, error=error, state=x[0]
-        )
+        # quasi-periodic and chaotic motions need three dimensions (Poincare and Bendixson)
+        possible = d + self.field.forced >= 3
+        kind = wandering(mean, error, possible) if possible else "slow"
+        return Settled(kind, exponent=mean, error=error, state=x[0])
 
-    # ------------------------------------------------------------------ what does not attract
+    # ------------------------------------------------------------------ unstable motions
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Unstable cycles in chaos are not looked for."""
+        """Return unstable cycles in chaos: none, they are not searched for."""
         return []
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Equilibria, stable or not, to which Newton's method leads from starts."""
+        """Return the equilibria, stable or unstable, to which Newton's method leads from starts."""
         if self.field.forced:
             return []
         found: list[np.ndarray] = []
@@ -249,19 +256,19 @@ class FlowPopulation(StartsInBox):
         return [(self._equilibria(p), x) for x in found]
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
-        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
+        """Rebuild the problem of a motion that a journal has recorded; None if it cannot be rebuilt."""
         return rebuild(description)
 
 
 class Settling:
-    """Starts on their way to what they settle on.
+    """Integration of many starts until they are recognised.
 
     Attributes
     ----------
     motions : list of Settled
-        Those that are known.
+        Motions found so far.
     index, mirrored : ndarray, shape (n,)
-        Which of them each start settles on, -1 of none yet, and whether on its mirror image.
+        Index of the motion on which each start settles (-1: not yet known), and whether it settles on the mirror image.
     """
 
     def __init__(self, population: FlowPopulation, starts: np.ndarray, p: float) -> None:
@@ -272,11 +279,11 @@ class Settling:
 
     @property
     def left(self) -> np.ndarray:
-        """Starts that have settled on nothing."""
+        """Indices of starts that are not yet recognised."""
         return np.flatnonzero(self.index < 0)
 
     def go(self, period: float | None) -> None:
-        """Until all have settled, or long enough; of forced flows from period to period."""
+        """Integrate until all starts are recognised or all rounds are over; forced flows in whole periods."""
         march, far, rounds = self.march, self.population.field.settings.far, 0
         for steps, periods, most, again in zip(STEPS, PERIODS, TRIED, AGAIN, strict=True):
             ways: dict[int, list[Place]] = {int(i): [] for i in self.left[:most]}
@@ -300,7 +307,7 @@ class Settling:
             self._add(self.population.irregular(march.x[left[:BLOCKS]], self.p), left)
 
     def _add(self, motion: Settled, which: np.ndarray) -> None:
-        """Starts have settled on what is no curve."""
+        """Assign starts to a motion without a curve: escaped, stopped, or irregular."""
         if not which.size:
             return
         same = [k for k, m in enumerate(self.motions) if m.kind == motion.kind and m.curve is None]
@@ -309,7 +316,7 @@ class Settling:
             self.motions.append(motion)
 
     def _assign(self, k: int) -> None:
-        """Give a motion, or its mirror image, the states that lie on it."""
+        """Assign the starts whose states lie on motion k or on its mirror image."""
         motion, x = self.motions[k], self.march.x
         for curve, mirrored in ((motion.curve, False), (motion.image, True)):
             if curve is not None:
@@ -318,7 +325,7 @@ class Settling:
                 self.index[near], self.mirrored[near] = k, mirrored
 
     def _recognise(self, ways: Mapping[int, Sequence[Place]], most: int, again: float) -> None:
-        """Solve for what the states that belong to nothing yet have come near to."""
+        """Solve for the motions near states that are not yet recognised, up to `most` failures and `again` known motions."""
         tried: list[int] = []
         while len(tried) < most and again > 0:
             i = next((int(i) for i in self.left if i not in tried), None)
@@ -330,7 +337,7 @@ class Settling:
             elif motion.curve is None:
                 self._add(motion, np.array([i]))
             else:
-                k = next((k for k, known in enumerate(self.motions) if self._same(known, motion)), None)
+                k = next((k for k, other in enumerate(self.motions) if self._same(other, motion)), None)
                 if k is None:
                     k = len(self.motions)
                     self.motions.append(motion)
@@ -347,14 +354,14 @@ class Settling:
         return alike and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
 
     def _along(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
-        """Whether a motion lies on a curve of another one, of such a size."""
+        """Whether a motion lies on the curve of another one of a given size."""
         if curve is None or motion.curve is None:
             return False
         return bool(self.population.on(motion.curve[:: max(1, len(motion.curve) // 8)], curve, size).all())
 
 
 def curves(flow: Flow, orbit: CycleOrbit, rounds: int) -> tuple[np.ndarray, np.ndarray | None]:
-    """States on a cycle and on its mirror image: all along, or where it repeats after so many periods of a forcing once per period."""
+    """Return states on a cycle and on its mirror image: along the whole curve, or (rounds > 0) once per period of the forcing."""
     times = np.arange(rounds) * orbit.period / rounds if rounds else np.linspace(0.0, orbit.period, 1001)[:-1]
     if flow.mirror is None:
         return orbit(times), None

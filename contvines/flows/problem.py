@@ -1,4 +1,4 @@
-"""FlowProblem: a user's differential equations, and where their equilibria and cycles begin."""
+"""FlowProblem: a user's differential equations, with the starts of their equilibria and cycles."""
 
 from __future__ import annotations
 
@@ -38,48 +38,49 @@ if TYPE_CHECKING:
 class FlowProblem(Flow):
     """Equilibria and cycles of x' = f(x, p), or cycles of x' = f(x, p, t) with a period in t.
 
-    ``contvines.diagram(flow, over=, within=)`` begins at the equilibrium near ``x0`` (at what a motion from ``x0`` settles on, of
-    forced flows) and finds Hopf points, the cycles that leave there, and their bifurcations.
+    ``contvines.diagram(flow, over=, within=)`` begins at the equilibrium near ``x0`` (for forced flows: at the cycle on which a motion from
+    ``x0`` settles) and finds Hopf points, the cycles that leave there, and their bifurcations.
 
     Parameters
     ----------
     f : callable
-        (x, p) -> d numbers, of forced flows (x, p, t). It may be written for arrays, ``x[0]`` being a number or an array of
-        numbers; whether it is, is found out. Or :class:`contvines.flows.CompiledRates`, functions in C.
+        (x, p) -> d numbers; for forced flows (x, p, t) -> d numbers. It may be vectorised, so that ``x[0]`` is a number or an array of
+        numbers; this is detected. Or :class:`contvines.flows.CompiledRates`, functions in C.
     x0 : array_like, shape (d,)
         A start.
     params : float, or mapping of str to float
         Values of the parameters by name: ``f`` then reads ``p.name``.
     mirror : callable, matrix or permutation, optional
-        x -> R x with R R x = x and f(R x, p) = R f(x, p); of forced flows at the same time or half a period later, which is found out.
+        x -> R x with R R x = x and f(R x, p) = R f(x, p); for forced flows at the same time or half a period later, which is detected.
     period : callable or float, optional
-        p -> period of f in t: the flow is forced.
+        p -> period of f in t, for forced flows.
     jacobian : callable, optional
-        df/dx of the same arguments, shape (d, d). Else the complex step, where f allows it, or differences.
+        df/dx of the same arguments, shape (d, d). By default the complex step if f allows it, else differences.
     derivative : callable, or mapping of str to callable, optional
-        df/dp, shape (d,); of several parameters by name.
+        df/dp, shape (d,); a mapping by name for several parameters.
     degree : int
-        Of the collocation polynomials, 2 to 7.
+        Degree of the collocation polynomials, 2 to 7.
     error : float, optional
-        Largest error of a cycle between its mesh points, relative to its size; intervals are halved where it is larger. Periods,
-        parameters and multipliers have the square of that, nearly.
+        Largest error of a cycle between its mesh points, relative to its size; if it is larger, the mesh intervals are halved. The errors
+        of periods, parameters and multipliers are nearly the square of it.
     settings : FlowSettings or mapping of str to float, optional
-        Other tolerances than the defaults; see :class:`contvines.flows.FlowSettings`.
+        Tolerances that differ from the defaults; see :class:`contvines.flows.FlowSettings`.
     scale : float or array_like of shape (d,), optional
-        What counts as large in each coordinate.
+        Typical size of each state; by default from the start and the first cycle.
     states : sequence of str, optional
-        Names of the states, as measures have them (``max x``); x0, x1, ... if left out.
+        Names of the states, for measures (``max x``); x0, x1, ... by default.
     events : mapping of str to callable, optional
-        By name, functions (x, p) -> number, of forced flows (x, p, t), that stop a motion where one of them becomes zero. Motions are
-        on the side of ``x0``. Branches end, labelled EV, where an equilibrium or a cycle comes to touch an event.
+        Functions (x, p) -> number, for forced flows (x, p, t) -> number, by name; a motion stops where one of them vanishes. Motions are
+        on the side of ``x0``. A branch ends (label EV) where an equilibrium or a cycle touches an event.
     parameter : str
-        Name of the parameter that varies if nobody says so; the first one if it is left out.
+        Name of the parameter that varies by default; the first one if it is left out.
     name : str
+        For tables.
 
     Raises
     ------
     ValueError
-        If f does not return d finite numbers at the start, or a derivative, the mirror or the degree is wrong.
+        If f does not return d finite numbers at the start, or if a derivative, the mirror, an event or another argument is wrong.
     """
 
     @hinting
@@ -155,7 +156,7 @@ class FlowProblem(Flow):
         time: object = None,
         **options: Unpack[FlowOptions],
     ) -> FlowProblem:
-        """A flow from SymPy expressions; its Jacobian is differentiated.
+        """Make a flow from SymPy expressions; its Jacobian is derived symbolically.
 
         Parameters
         ----------
@@ -166,14 +167,14 @@ class FlowProblem(Flow):
         params : mapping of str to float
             Values of all other symbols, by name.
         time : sympy symbol, optional
-            Of forced flows.
+            Symbol of the time, for forced flows.
         **options
-            Of :class:`FlowProblem`.
+            Options of :class:`FlowProblem`.
 
         Raises
         ------
         ValueError
-            If a symbol has no value.
+            If a symbol has no value, or an expression cannot be read.
         """
         if not isinstance(params, Mapping):
             raise ValueError(f"params = {params!r} must be values by name, such as {{'a': 1.0}}")
@@ -191,12 +192,12 @@ class FlowProblem(Flow):
         return dict(self.values.values)
 
     def problem(self, parameter: str | None = None) -> Equilibria | CycleMesh:
-        """The equilibria as a continuation problem; of a forced flow the cycle on which its start settles.
+        """Return the equilibria as a continuation problem; for a forced flow the cycle on which a motion from ``x0`` settles.
 
         Parameters
         ----------
         parameter : str, optional
-            The one that varies; by default the first of `params`.
+            Parameter that varies; by default the first of `params`.
         """
         parameter = self.values.varying if parameter is None else parameter
         if self._equilibria is not None:
@@ -204,20 +205,20 @@ class FlowProblem(Flow):
         return self.attractor(self.x0).problem(parameter)
 
     def seed(self, problem: Started) -> tuple[np.ndarray, float]:
-        """The start of such a problem."""
+        """Return the start of a problem of this flow: unknowns and parameter value."""
         return problem.u0, problem.p0
 
     def equilibria(
         self, parameter: str | None = None, values: Mapping[str, float] | None = None
     ) -> Equilibria:
-        """The equilibria as a continuation problem.
+        """Return the equilibria as a continuation problem.
 
         Parameters
         ----------
         parameter : str, optional
-            The one that varies; by default the first of `params`.
+            Parameter that varies; by default the first of `params`.
         values : mapping, optional
-            Of other parameters.
+            New values of parameters.
 
         Raises
         ------
@@ -240,18 +241,18 @@ class FlowProblem(Flow):
         around: np.ndarray | None = None,
         **values: float,
     ) -> FlowPopulation:
-        """Starts in a box of states, for `atlas` and `basins`.
+        """Return a population of starts in a box of states, for `atlas` and `basins`.
 
         Parameters
         ----------
         over : str, optional
-            The parameter that varies; by default the first of `params`.
+            Parameter that varies; by default the first of `params`.
         box : sequence of (float, float), optional
-            Smallest and largest value of each state; by default round the flow's own start.
+            Smallest and largest value of each state; by default a box around the flow's start.
         around : ndarray, shape (n, d), optional
-            States round which the box is laid, such as those of a cycle.
+            States that the default box contains, such as those of a cycle.
         **values
-            Of parameters.
+            Values of parameters.
         """
         return self.population_at(values, over, box, around)
 
@@ -262,7 +263,7 @@ class FlowProblem(Flow):
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
     ) -> FlowPopulation:
-        """:meth:`population` with values of parameters in a mapping."""
+        """Call :meth:`population` with parameter values in a mapping."""
         return FlowPopulation(self, self.values.varying if over is None else over, values, box, around)
 
     # ------------------------------------------------------------------ cycles
@@ -276,25 +277,25 @@ class FlowProblem(Flow):
         doublings: int = 12,
         **values: float,
     ) -> CycleOrbit:
-        """The cycle on which a motion settles: simulated until it recurs, then solved for.
+        """Find the cycle on which a motion settles: simulate until the motion recurs, then solve for the cycle.
 
         Parameters
         ----------
         x0 : array_like, optional
-            Where the motion begins; the flow's own start if left out.
+            Start of the motion; by default the flow's start.
         transient : float, optional
-            Time before recurrence is looked for; it is lengthened as long as nothing recurs.
+            Time before the motion is tested for recurrence; it is doubled while the motion does not recur.
         longest : int
-            Returns (periods of the forcing) after which a motion is given up.
+            Most returns (periods of the forcing) of the cycle.
         doublings : int
-            How often the transient is lengthened before that.
+            Most doublings of the transient.
         **values
-            Of parameters.
+            Values of parameters.
 
         Returns
         -------
         CycleOrbit
-            `contvines.diagram` begins with it.
+            A start for `contvines.diagram`.
 
         Raises
         ------
@@ -312,7 +313,7 @@ class FlowProblem(Flow):
         longest: int = 64,
         doublings: int = 12,
     ) -> CycleOrbit:
-        """:meth:`attractor` with values of parameters in a mapping: they may have the names of its arguments."""
+        """Call :meth:`attractor` with parameter values in a mapping, so that parameters may have the names of its arguments."""
         parameters = self.values.against(self.values.varying, values)
         start = self.x0 if x0 is None else flat_start(x0, "x0")
         if len(start) != len(self.x0):
@@ -339,28 +340,28 @@ class FlowProblem(Flow):
     def cycle(
         self, times: ArrayLike, states: ArrayLike, *, rounds: int | None = None, **values: float
     ) -> CycleOrbit:
-        """The cycle near given states at given times, from the first time to one period later.
+        """Solve for the cycle near given states; the times cover one period.
 
         Parameters
         ----------
         times : array_like, shape (n,)
         states : array_like, shape (n, d)
         rounds : int, optional
-            Of forced flows: after so many periods of the forcing; by default as many as the times tell.
+            Forced flows: periods of the forcing in one period of the cycle; by default from the times.
         **values
-            Of parameters.
+            Values of parameters.
 
         Raises
         ------
         ValueError
-            If the data are no cycle, or Newton's method does not lead from them to one.
+            If the data have a wrong shape, or Newton's method does not converge to a cycle.
         """
         return self.cycle_at(values, times, states, rounds)
 
     def cycle_at(
         self, values: Mapping[str, float], times: ArrayLike, states: ArrayLike, rounds: int | None = None
     ) -> CycleOrbit:
-        """:meth:`cycle` with values of parameters in a mapping."""
+        """Call :meth:`cycle` with parameter values in a mapping."""
         t, x = _numbers("times", times), _numbers("states", states)
         if t.ndim != 1 or len(t) < 5 or not (np.diff(t) > 0.0).all():
             raise ValueError("times must be at least five increasing numbers")
@@ -377,13 +378,13 @@ class FlowProblem(Flow):
         return cycle_beside(self, t, x, parameters, rounds or 1)
 
     def cycles(self, field: Field, u: np.ndarray, counts: tuple[int, int, int], sizes: Sizes) -> CycleProblem:
-        """The problem of cycles; scales are those of the first one that was asked for, so that cycles of all can be compared."""
+        """Return the problem of cycles; all have the scales of the first call, so that cycles of different branches can be compared."""
         if self.sizes is None:
             self.sizes = np.array(sizes[0], dtype=float), float(sizes[1])
         return CycleProblem(self, field, u, counts, (*self.sizes, sizes[2]))
 
     def problem_of(self, description: Mapping[str, Any]) -> Equilibria | CycleProblem:
-        """Equilibria or cycles from what ``describe()`` of them returned."""
+        """Rebuild equilibria or cycles of this flow from the result of their ``describe()``."""
         values = description["p0"]
         named = dict(values) if isinstance(values, Mapping) else {description["parameter"]: values}
         cycle = description.get("cycle")
@@ -396,9 +397,9 @@ class FlowProblem(Flow):
         counts = cycle["intervals"], cycle["rounds"], cycle["copies"]
         return self.cycles(field, np.array(cycle["u0"], dtype=float), counts, (*self.sizes, cycle["unit"]))
 
-    # ------------------------------------------------------------------ measures, and what else attracts
+    # ------------------------------------------------------------------ attractors
     def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]:
-        """What starts settle on: "word" and "kind" of each motion, "periods" of the forcing, and "u", the extremes of its states."""
+        """Simulate starts and list what they settle on: "word", "kind" and forcing "periods" of each motion, and "u", the extremes of its states."""
         assert isinstance(problem, Populated)
         population = problem.population()
         motions, _, _ = population.settle(population.starts(starts, 7, p), p)
@@ -415,7 +416,7 @@ class FlowProblem(Flow):
         return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
 
     def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable solution as `simulated_attractors` lists it."""
+        """Return a stable solution as an entry of `simulated_attractors`."""
         if isinstance(problem, CycleProblem):
             word, periods = "cycle", problem.rounds if self.field.forced else 0
             curve, image = curves(self, problem.orbit(u, p), periods)
@@ -425,7 +426,10 @@ class FlowProblem(Flow):
         return {"word": word, "periods": periods, "kind": "periodic", "u": self._extremes(curve, image)}
 
     def _extremes(self, curve: np.ndarray, image: np.ndarray | None) -> list[float]:
-        """Least and largest state along a motion, of two mirror images those of the one that is larger first: of two motions that are one they agree to a few digits."""
+        """Smallest and largest values of the states along a motion; of two mirror images those of the one with the larger first different value.
+
+        For equal motions they agree to a few digits.
+        """
         own = np.concatenate([curve.min(axis=0), curve.max(axis=0)])
         if image is not None:
             other = np.concatenate([image.min(axis=0), image.max(axis=0)])
@@ -434,7 +438,7 @@ class FlowProblem(Flow):
         return own.tolist()
 
     def describe(self) -> dict[str, Any]:
-        """Name, start, and how to build the flow again if its functions can be imported."""
+        """Return name, start, and the data from which the flow is rebuilt if its functions can be imported."""
         return super().describe() if self._equilibria is None else self._equilibria.describe()
 
 

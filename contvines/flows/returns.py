@@ -1,9 +1,9 @@
-"""Motions beside a cycle, from one return to the next: the return map, many at once with derivatives, and the section that invariant circles ask for.
+"""Return map near a cycle, with derivatives and for many points at once; and the section of a flow for invariant circles.
 
-The section is the plane across the cycle at its first mesh point (of forced flows: all states); its coordinates y are orthonormal in the
-scale of the cycle's states. Motions are solved by the collocation equations of the cycle's own mesh, interval by interval, with Newton's method: the cycle
-is a fixed point exactly, and the derivative of the map there has its multipliers. Autonomous motions go on for the period of the cycle, then by one more step to
-the plane.
+The section is the plane across the cycle at its first mesh point (for forced flows: all states); its coordinates y are orthonormal in units of
+the scales of the states. Motions are computed by the collocation equations on the cycle's mesh, interval by interval, with Newton's method, so that
+the cycle is exactly a fixed point, and the derivative of the map there has exactly its multipliers. Motions of an autonomous flow are computed for the
+period of the cycle, and then by one more step onto the plane.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
 
 
-SWEEPS = 20  # of Newton's method in an interval
-QUICK = 0.1  # part of the last correction above which slopes are renewed
-SOLVED = 8.0 * ROUNDED  # change of the place at which a cycle passes the plane, in units of the period
-AWAY, LATEST = 0.5, 1.6  # periods after which, and until when, the next passage is looked for
+SWEEPS = 20  # most steps of Newton's method
+QUICK = 0.1  # if a correction shrinks by less than this factor, the Jacobian is evaluated again
+SOLVED = 8.0 * ROUNDED  # accuracy of the time at which a cycle crosses the plane, in units of the period
+AWAY, LATEST = 0.5, 1.6  # earliest and latest time of the next crossing, in periods
 
-#: of motions through a part of the cycle: where they end, values at the nodes, lengths, times at the Gauss points, and the derivative of length times rate by the parameter
+#: motions through one interval: ends, values at the nodes, durations, times at the Gauss points, and a function for the derivative of duration times rate by the parameter
 Flight = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None, Callable[[np.ndarray], np.ndarray]]
 
 
 class ReturnMap:
-    """The map from one return to the next beside a cycle.
+    """Map from one return to the next near a cycle.
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ class ReturnMap:
     Attributes
     ----------
     start : ndarray, shape (d,)
-        The cycle on the section, where y = 0.
+        Point of the cycle on the section; its coordinates are y = 0.
     basis : ndarray, shape (d, k)
-        A state on the section is ``start + basis @ y``.
+        States on the section are ``start + basis @ y``.
     """
 
     def __init__(self, problem: CycleMesh, u: np.ndarray, p: float) -> None:
@@ -66,26 +66,26 @@ class ReturnMap:
         self.basis, self.inverse = self.scale[:, None] * across, across.T / self.scale
 
     def states(self, y: np.ndarray) -> np.ndarray:
-        """States at points of the section, shape (n, d)."""
+        """Return the states at points of the section, shape (n, d)."""
         return self.start + y @ self.basis.T
 
     def coordinates(self, states: np.ndarray) -> np.ndarray:
-        """Points of the section, shape (n, k)."""
+        """Return the section coordinates of states, shape (n, k)."""
         return (states - self.start) @ self.inverse.T
 
     def __call__(self, y: np.ndarray) -> np.ndarray:
-        """The next points, shape (n, k); NaN where a motion does not come back."""
+        """Return the next points, shape (n, k); NaN where a motion does not return."""
         return self.coordinates(self._returned(self.states(np.atleast_2d(y)), self.p, False)[0])
 
     def varied(self, y: np.ndarray, p: float | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The next points, their derivatives by the points, (n, k, k), and by the parameter, (n, k)."""
+        """Return the next points, their derivatives by the points, shape (n, k, k), and by the parameter, shape (n, k)."""
         end, found = self._returned(self.states(np.atleast_2d(y)), self.p if p is None else p, True)
         by_state = np.einsum("ka,nab,bl->nkl", self.inverse, found[:, :, :-1], self.basis)
         return self.coordinates(end), by_state, found[:, :, -1] @ self.inverse.T
 
     # ------------------------------------------------------------------ motions
     def _returned(self, x: np.ndarray, p: float, derivatives: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Where motions are at the next return, with derivatives by where they were and, in the last column, by the parameter, (n, d, d + 1)."""
+        """States at the next return, and their derivatives by the initial states and, in the last column, by the parameter, shape (n, d, d + 1)."""
         d, x = self.node, np.array(x, dtype=float)
         total = np.tile(np.eye(d, d + 1), (len(x), 1, 1))
         with np.errstate(all="ignore"):
@@ -103,7 +103,7 @@ class ReturnMap:
         return x, total
 
     def _through(self, i: int, x: np.ndarray, p: float) -> Flight:
-        """Through an interval of the mesh."""
+        """Compute motions through interval i of the mesh."""
         field, count, width = self.field, len(x), self.widths[i]
         places = self.begins[i] + width * self.rule.points
 
@@ -122,7 +122,7 @@ class ReturnMap:
         return nodes[:, -1], nodes, steps, when, by
 
     def _onto_plane(self, x: np.ndarray, p: float) -> Flight:
-        """By one step of each motion's own length."""
+        """Compute motions onto the plane, by one step of a duration of its own for each."""
 
         def until(x: np.ndarray) -> np.ndarray:
             return -((x - self.start) @ self.normal) / (self._rates(x, p) @ self.normal)
@@ -150,7 +150,7 @@ class ReturnMap:
         times: np.ndarray | None,
         by: Callable[[np.ndarray], np.ndarray],
     ) -> np.ndarray:
-        """Derivatives of the ends by where motions were and, in the last column, by the parameter, (n, d, d + 1)."""
+        """Derivatives of the ends by the initial states and, in the last column, by the parameter, shape (n, d, d + 1)."""
         d, inner = self.node, self.rule.degree * self.node
         slopes, points = self._slopes(nodes, steps, p, times), self._points(nodes)
         last = by(points) if np.isfinite(points).all() else np.zeros_like(points)
@@ -158,11 +158,11 @@ class ReturnMap:
         return self._linear(slopes[..., d:], sides)[:, -d:]
 
     def _points(self, whole: np.ndarray) -> np.ndarray:
-        """The Gauss points, shape (n m, d)."""
+        """States at the Gauss points, shape (n m, d)."""
         return np.matmul(self.rule.values, whole).reshape(-1, self.node)
 
     def _slopes(self, whole: np.ndarray, steps: np.ndarray, p: float, times: np.ndarray | None) -> np.ndarray:
-        """Derivatives of the equations by the values at the nodes, the first one among them, shape (n, m d, (m + 1) d)."""
+        """Derivatives of the equations by the values at all nodes, shape (n, m d, (m + 1) d)."""
         jacobian = self._jacobian(self._points(whole), p, times)
         return self.rule.blocks(np.repeat(steps, self.rule.degree)[:, None, None] * jacobian)
 
@@ -175,9 +175,9 @@ class ReturnMap:
         times: np.ndarray | None,
         beside: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Values at the nodes, (n, m + 1, d), from a guess of all but the first; NaN where there are none.
+        """Solve for the values at the nodes, shape (n, m + 1, d), from a guess of all but the first; NaN where Newton's method fails.
 
-        Slopes are those at a known motion, `beside`, as long as corrections shrink quickly, then those of each motion itself.
+        The Jacobian at a known motion, `beside`, is used for all motions while corrections shrink quickly, then the Jacobian of each motion.
         """
         d, inner, count = self.node, self.rule.degree * self.node, len(x)
         nodes, last, inverse = (
@@ -225,7 +225,7 @@ class ReturnMap:
     def _evaluated(
         self, f: Callable, x: np.ndarray, times: np.ndarray | None, shape: tuple[int, ...]
     ) -> np.ndarray:
-        """A function of states at those that are finite; NaN elsewhere."""
+        """Evaluate a function at the states that are finite; NaN for the others."""
         good = np.isfinite(x).all(axis=1)
         found = np.full((len(x), *shape), np.nan)
         if good.any():
@@ -235,25 +235,27 @@ class ReturnMap:
 
 
 class FlowSection:
-    """Motions seen once per period; the contract is that of :mod:`contvines.circles.section`.
+    """Section of a flow; the contract is in :mod:`contvines.circles.section`.
 
-    A point has the states but the one along which the plane is steepest; of forced flows it has all states. `step` is a simulation by scipy,
-    `images`, many at once and with derivatives, are those of the return map.
+    The coordinates of a point are all states except the one with the largest component of the plane's normal; for forced flows all states.
+    `step` is a simulation by scipy; `images` uses the return map, for many points at once and with derivatives.
 
     Parameters
     ----------
     returns : ReturnMap
-        Of the cycle at which circles are born.
+        Return map of the cycle at which circles are born.
     p : float
     """
 
-    returns_watched = 600  # of a simulation: each takes about as long as a cycle's Newton step
+    # most returns of a simulation: each costs about as much as a Newton step of a cycle
+    returns_watched = 600
 
     def __init__(self, returns: ReturnMap, p: float) -> None:
         self.returns, self.p = returns, float(p)
         problem, d = returns.problem, returns.node
         self.free = bool(problem.free_period)
-        self.kept, self.chart = np.arange(d), np.eye(d)  # which states a point has; all states from them
+        # states that are coordinates; matrix from these to all states
+        self.kept, self.chart = np.arange(d), np.eye(d)
         if self.free:
             steep = int(np.argmax(np.abs(returns.normal * returns.scale)))
             self.kept = np.delete(self.kept, steep)
@@ -267,15 +269,15 @@ class FlowSection:
         return start + (x - start[self.kept]) @ self.chart.T
 
     def length(self, direction: np.ndarray) -> float:
-        """Of a direction of points, as normal forms of cycles measure it: over all states."""
+        """Return the length of a direction for normal forms of cycles: the norm over all states."""
         return float(np.linalg.norm(self.chart @ direction))
 
     def through(self, u: np.ndarray) -> np.ndarray:
-        """The point in which the cycle with these unknowns passes the plane, next to its first mesh point."""
+        """Return the point in which the cycle with these unknowns crosses the plane, near its first mesh point."""
         return self.rounds(u)[0]
 
     def rounds(self, u: np.ndarray) -> np.ndarray:
-        """The same; of forced flows once per period of the forcing."""
+        """Return this point as an array of one row; for forced flows a point for each period of the forcing."""
         problem, r = self.returns.problem, self.returns
         x, _, widths = problem.parts(u, self.p)
         if not self.free:
@@ -292,7 +294,7 @@ class FlowSection:
         return mesh.evaluate(problem.rule, widths, x, np.array([place]))[:, self.kept]
 
     def step(self, x: np.ndarray) -> np.ndarray:
-        """The next point, by simulation; NaN where the motion does not come back."""
+        """Return the next point by simulation; NaN if the motion does not return."""
         from scipy.integrate import solve_ivp
 
         r, field, start = self.returns, self.returns.field, self._states(np.asarray(x, dtype=float))
@@ -317,7 +319,7 @@ class FlowSection:
         return found.y_events[0][0][self.kept] if found.status == 1 else lost
 
     def images(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The next points (n, k), their derivatives by the points, (n, k, k), and by the parameter, (n, k)."""
+        """Return the next points (n, k), their derivatives by the points, (n, k, k), and by the parameter, (n, k)."""
         r = self.returns
         found, by_state, by_value = r.varied(r.coordinates(self._states(points)), self.p)
         out, into = r.basis[self.kept], r.inverse @ self.chart

@@ -10,54 +10,58 @@ from contvines.shared.near_names import did_you_mean
 
 @dataclass(frozen=True)
 class FlowSettings:
-    """Tolerances of a flow; those of continuation are :class:`contvines.Settings`. Sizes are those of a motion, lengths those over which f bends.
+    """Tolerances of a flow; those of continuation are :class:`contvines.Settings`.
+
+    Below, the size of a motion is the range of its states, and a length is the change of a state over which f is nonlinear.
 
     Attributes
     ----------
     relative, absolute : float
-        Simulation: errors of a step, relative to the state, and to the size of a motion.
+        Simulation: error tolerances of the integrator, relative to the state and to the size of the motion.
     rough_relative, rough_absolute : float
-        Simulation: the same of transients and of many starts.
+        Simulation: the same for transients and for many starts.
     exact_relative, exact_absolute : float
-        Simulation: the same of simulations with which cycles are compared.
+        Simulation: the same for simulations that check cycles.
     spread : float
-        Simulation: largest ratio of two growths in one simulation of multipliers.
+        Simulation: largest ratio of two growth factors in one simulation of multipliers.
     far, endless : float
-        Simulation: a motion has escaped so many sizes of the box of starts away, or so many times where it began and the length over which f bends.
+        Simulation: a motion has escaped at a distance of `far` sizes of the box of starts, or of `endless` times its start and its lengths.
     beside : float
-        Starts: distance from an equilibrium, in lengths, at which a motion begins in its place; of copies of a motion, in sizes of the box.
+        Starts: offset, in lengths, of a start that is itself an equilibrium; offset, in sizes of the box, of copies of a motion.
     recurs, nearly : float
-        Recognition: distance of two returns that are one, relative to the size of a motion; such that a more exact simulation is worth while.
+        Recognition: largest distance of equal returns, relative to the size of the motion; distance below which a more accurate simulation is made.
     least : float
-        Recognition: part of the largest range of a state below which another state counts as still.
+        Recognition: a state whose range is below this part of the largest range counts as constant.
     smallest : float
-        Scales: least range of a state, relative to the largest, or to the box.
+        Scales: smallest scale of a state, relative to the largest range or to the box.
     still : float
-        Recognition: size of a motion, relative to the state, that is rest.
+        Recognition: largest size, relative to the state, of a motion at rest.
     near : float
-        Recognition: distance of a state from a motion to which it belongs, relative to its size.
+        Recognition: largest distance of a state from a motion to which it belongs, relative to the size of the motion.
     same : float
-        Recognition: relative distance of points, cycles and equilibria that are one; size of a cycle that is an equilibrium.
+        Recognition: largest relative distance of equal points, cycles and equilibria; largest size of a cycle that is an equilibrium.
     at_rest : float
-        Ends: size, in units of the scale, of a cycle that has shrunk to an equilibrium, and distance of halves of a cycle that is one of half the period.
+        Ends: size, in units of the scale, of a cycle that has shrunk to an equilibrium, and distance between the halves of a cycle that has become one of
+        half the period.
     halving : float
-        Ends: distance of a cycle from itself half a period later, relative to its size, below which it is followed on a mesh with equal halves.
+        Ends: distance of a cycle from itself half a period later, relative to its size, below which it gets a mesh with equal halves.
     in_phase : float
-        Phase: cosine of the angle between the directions of motion of two cycles, in the mean over the period, above which one keeps the phase of the other.
+        Phase: smallest cosine of the angle between the velocities of two cycles (averaged over the period) at which one keeps the phase of the other.
     homoclinic, longest : float
-        Ends: distance from an equilibrium relative to the size of a cycle, and period in units of the first one, at which a cycle counts as homoclinic.
+        Ends: a cycle counts as homoclinic at this distance from an equilibrium, relative to its size, or at this period, relative to the first one.
     touch : float
         Ends: step of differences at an event, in sizes of the cycle.
     error : float
-        Errors: largest one of a cycle between its mesh points, relative to its size.
+        Errors: largest error of a cycle between its mesh points, relative to its size.
     sensible : float
-        Errors: error of the trivial multiplier up to which it tells that of the others.
+        Errors: largest error of the trivial multiplier at which it is used as an estimate for the other multipliers.
     solved, rounded, diverged : float
-        Newton's method: last correction, in units of the scale; correction that is rounding where it shrinks no more; one from which nothing converges.
+        Newton's method, corrections in units of the scale: the last one; the largest one accepted when rounding stops convergence; one at which the method has
+        diverged.
     agree : float
-        Functions: relative difference of values that must be equal (one state and many, mirror images).
+        Functions: largest relative difference of values that must be equal (one point or many in a call, mirror images).
     critical : float
-        Hopf points: real part of an eigenvalue, relative to the largest one, that is zero.
+        Hopf points: largest real part, relative to the largest eigenvalue, of a further critical pair.
     """
 
     relative: float = 1e-10
@@ -93,12 +97,12 @@ class FlowSettings:
 
     @classmethod
     def of(cls, given: FlowSettings | Mapping[str, float] | None) -> FlowSettings:
-        """The settings that are given, with defaults for the others.
+        """Return settings from given values, with defaults for the others.
 
         Raises
         ------
         ValueError
-            If there is no such setting, or a value is no positive number.
+            If there is no setting of a given name, or a value is no positive number.
         """
         if isinstance(given, FlowSettings):
             return given
@@ -113,5 +117,5 @@ class FlowSettings:
         return cls(**(given or {}))
 
     def changed(self) -> dict[str, float]:
-        """Those that differ from the defaults."""
+        """Return the settings that differ from the defaults."""
         return {name: value for name, value in asdict(self).items() if value != getattr(FlowSettings, name)}

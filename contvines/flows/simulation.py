@@ -1,7 +1,7 @@
-"""Simulation of flows: one motion until it recurs, by scipy's integrators, and many motions at once.
+"""Simulation of flows: one motion until it recurs, by scipy's integrators; many motions at once, by the method of Dormand and Prince.
 
-The latter by Dormand and Prince's method of order five, each motion with a step length of its own: J. Comput. Appl. Math. 6 (1980) 19, table 2.
-Importing scipy's takes longer than a diagram of a small flow.
+The latter has order five, and each motion has its own step length: J. Comput. Appl. Math. 6 (1980) 19, table 2. scipy's integrators are imported
+only when they are used, since the import takes longer than a diagram of a small flow.
 """
 
 from __future__ import annotations
@@ -21,14 +21,16 @@ if TYPE_CHECKING:
     from .field import Field
 
 
-SAMPLES = 400  # states of a period that are handed over
-FIRST = 50.0  # time scales of the first transient
-CAUTION = 10.0  # times the tolerance of a simulation
-DOUBLINGS = 12  # of the transient
-BRIEF = 100  # steps of the integrator: a motion that takes no more has hardly gone on; of a stiff flow, whose fastest scale begins the transient
-MOST = 80  # such motions
-FIRST_STEP = 0.001  # step at first, in times after which a motion has gone its size
+SAMPLES = 400  # states per period of a result
+FIRST = 50.0  # length of the first transient, in the fastest time scale at the start
+CAUTION = 10.0  # distance at which an equilibrium counts as reached, in tolerances of the simulation
+DOUBLINGS = 12  # default for the doublings of the transient
+BRIEF = 100  # a simulation with no more integrator steps does not count as a doubling: in a stiff flow the first transients are very short
+MOST = 80  # most simulations that do not count
+FIRST_STEP = 0.001  # first step, in units of the time in which a motion moves by its size
+# step control: safety factor, smallest and largest ratio of successive steps
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+# coefficients of Dormand and Prince: times and weights of the stages, weights of the result, of its error
 PLACES = (0.2, 0.3, 0.8, 8 / 9, 1.0)
 STAGES = [
     np.array([1 / 5]),
@@ -42,7 +44,7 @@ ERROR = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 
 
 
 class Place(NamedTuple):
-    """Where a motion is at a time, and its rate."""
+    """Time, state and rate of a motion."""
 
     t: float
     x: np.ndarray
@@ -50,14 +52,14 @@ class Place(NamedTuple):
 
 
 class Way:
-    """A motion through some places, between them along cubic polynomials."""
+    """A motion through given places, interpolated by cubic Hermite polynomials; it has the interface of scipy's results."""
 
     def __init__(self, places: Sequence[Place]) -> None:
         self.t = np.array([place.t for place in places])
         self.y, self.rates = (np.column_stack([place[k] for place in places]) for k in (1, 2))
 
     def sol(self, time: np.ndarray | float) -> np.ndarray:
-        """States at times."""
+        """Return the states at times, shape (d, ...)."""
         i = np.clip(np.searchsorted(self.t, time) - 1, 0, len(self.t) - 2)
         h = self.t[i + 1] - self.t[i]
         s = (time - self.t[i]) / h
@@ -67,7 +69,7 @@ class Way:
 
 
 class AtRest(ValueError):
-    """A motion that comes to rest in `state`."""
+    """The motion comes to rest at `state`."""
 
     def __init__(self, state: np.ndarray) -> None:
         self.state = state
@@ -77,15 +79,15 @@ class AtRest(ValueError):
 
 
 class Escaped(ValueError):
-    """A motion that cannot be simulated on."""
+    """The motion escapes: it cannot be simulated any further."""
 
 
 class Stopped(ValueError):
-    """A motion that one of the flow's events stops."""
+    """An event of the flow stops the motion."""
 
 
 class Irregular(ValueError):
-    """A motion that does not recur."""
+    """The motion does not recur."""
 
 
 def recurrence(
@@ -96,7 +98,7 @@ def recurrence(
     longest: int,
     doublings: int = DOUBLINGS,
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    """Times and states of one period of the cycle on which a motion settles, and after how many periods of the forcing it recurs.
+    """Simulate a motion until it recurs; return times and states of one period, and the number of forcing periods in it (1 if autonomous).
 
     Raises
     ------
@@ -179,9 +181,8 @@ def _free(
     fastest = float(np.abs(np.linalg.eigvals(matrix)).max())
     span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
     if not rate(0.0, x).any():
-        x = x + s.beside * field.lengths / np.arange(
-            1.0, len(x) + 1
-        )  # upwards: concentrations may be zero there
+        # the start is an equilibrium: move off it, in the positive direction since concentrations may be zero there
+        x = x + s.beside * field.lengths / np.arange(1.0, len(x) + 1)
     x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
     brief = 0
     while doublings > 0 and brief < MOST:
@@ -211,7 +212,7 @@ def _free(
 def last_round(
     field: Field, p: float, places: Sequence[Place], longest: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Times and states of the last period of a motion through some places; None where it does not recur."""
+    """Return times and states of the last period of a motion through given places; None if it does not recur."""
     settled = places[len(places) // 2 :]
     if len(settled) < 2:
         return None
@@ -224,7 +225,7 @@ def last_round(
 
 
 def _fastest(field: Field, p: float, run: OdeResult | Way) -> tuple[Place, np.ndarray]:
-    """Where a motion is fastest in units of its size, with its rate there in those of their squares, and these units."""
+    """The place at which a motion is fastest relative to its size, with its rate divided by the squared sizes (normal of a plane), and the sizes."""
     own = np.ptp(run.y, axis=1) / field.lengths
     unit = field.lengths * np.maximum(own, field.settings.least * own.max())
     rates = field(run.y.T, p)
@@ -233,7 +234,7 @@ def _fastest(field: Field, p: float, run: OdeResult | Way) -> tuple[Place, np.nd
 
 
 def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
-    """The equilibrium that attracts, if it is as near to a state as the errors of a rough simulation allow."""
+    """The stable equilibrium at a state, within the errors of a rough simulation; None if there is none."""
     s, matrix = field.settings, field.jacobian(x[None], p)[0]
     try:
         step = np.linalg.solve(matrix, -field(x[None], p)[0])
@@ -246,7 +247,7 @@ def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
 def _returned(
     run: OdeResult | Way, plane: Place, close: np.ndarray, longest: int
 ) -> tuple[float, float] | None:
-    """The times at which a motion last passes a plane in one and the same state; None if it does not come back to one."""
+    """The last two times at which a motion crosses a plane in the same state; None if it does not return to the same state."""
     heights = plane.rate @ (run.y - plane.x[:, None])
     passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
     if len(passed) < 2:
@@ -261,7 +262,7 @@ def _returned(
 
 
 def _crossing(run: OdeResult | Way, plane: Place, i: int) -> float:
-    """Time at which a motion passes a plane in a step of the integrator, by bisection."""
+    """Time at which a motion crosses a plane within step i of the integrator, by bisection."""
     low, high = float(run.t[i]), float(run.t[i + 1])
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -273,15 +274,16 @@ def _crossing(run: OdeResult | Way, plane: Place, i: int) -> float:
 
 
 class March:
-    """Motions that go on from where they are.
+    """Integration of many motions at once, in any number of calls.
 
     Parameters
     ----------
     field : Field
     p : float
-    x : ndarray, shape (n, d), or (n, 2 d) with a vector that the linearised flow carries along each
-    size : ndarray, likewise of shape (d,) or (2 d,)
-        What counts as large in each coordinate.
+    x : ndarray, shape (n, d) or (n, 2 d)
+        Initial states; with 2 d columns each is followed by a perturbation, which is integrated by the linearised flow.
+    size : ndarray, shape (d,) or (2 d,)
+        Typical size of each column.
     """
 
     def __init__(self, field: Field, p: float, x: np.ndarray, size: np.ndarray) -> None:
@@ -308,7 +310,7 @@ class March:
             return np.concatenate([self._rates(x[i : i + 1], t[i : i + 1]) for i in range(len(x))])
 
     def _stop(self, rows: np.ndarray) -> None:
-        """Those that are beyond an event become NaN."""
+        """Set motions that are beyond an event to NaN."""
         field = self.field
         if self.vectors or not len(field.events) or not rows.size:
             return
@@ -325,9 +327,9 @@ class March:
         far: float = np.inf,
         ways: Mapping[int, list[Place]] | None = None,
     ) -> None:
-        """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN.
+        """Integrate the motions `rows` for a number of steps, or until a time; a motion that fails or moves beyond `far` sizes becomes NaN.
 
-        The places to which steps lead are added to the ways of motions that have one.
+        `ways` collects the places after each step, for the motions that are its keys.
         """
         relative, absolute = self.field.settings.rough_relative, self.field.settings.rough_absolute
         for _ in range(steps):

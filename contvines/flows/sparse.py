@@ -1,6 +1,6 @@
-"""Cycles of large flows whose Jacobian is sparse: the bordered system factorised as a whole, and the leading multipliers by ARPACK.
+"""Cycles of large flows with a sparse Jacobian: one factorisation of the whole bordered system, and leading multipliers by ARPACK.
 
-A point costs as much as the factors of one matrix with N m d rows do; no matrix with d^2 entries is made.
+A point costs about as much as the factorisation of a matrix with N m d rows; no dense matrix with d^2 entries is computed.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ if TYPE_CHECKING:
 
     from .mesh import Rule
 
-LARGE = 30  # states from which on entries that are zero are looked for
-DENSE = 0.25  # part of the entries from which on a Jacobian counts as full
-LEADING = 10  # multipliers
-SMALL = ROUNDED**0.5  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
+LARGE = 30  # states from which on the sparsity of the Jacobian is determined
+DENSE = 0.25  # part of nonzero entries above which a Jacobian counts as dense
+LEADING = 10  # number of multipliers that are computed
+# factor of the border rows: small rows become the last pivots, so that the factors stay sparse
+SMALL = ROUNDED**0.5
 
 
 def found_sparsity(jacobian: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> Colouring | None:
-    """Where a Jacobian has entries at some places, with groups of columns; None where it is not sparse.
+    """Return the sparsity pattern of a Jacobian at some points, with groups of columns; None if it is dense.
 
     Parameters
     ----------
@@ -48,15 +49,15 @@ def found_sparsity(jacobian: Callable[[np.ndarray], np.ndarray], places: np.ndar
 
 
 class SparseEquations:
-    """Where the derivatives of the collocation equations of a mesh have entries.
+    """Sparsity pattern of the derivatives of a mesh's collocation equations.
 
     Parameters
     ----------
     pattern : Colouring
-        Of df/dx.
+        Pattern of df/dx.
     rule : Rule
     count : int
-        Of intervals.
+        Number of intervals.
     """
 
     def __init__(self, pattern: Colouring, rule: Rule, count: int) -> None:
@@ -76,7 +77,7 @@ class SparseEquations:
         self.rows, self.columns = np.concatenate(rows), np.concatenate(columns)
 
     def entries(self, steps: np.ndarray, jacobian: np.ndarray, scale: np.ndarray) -> np.ndarray:
-        """The entries, from those of df/dx at the Gauss points, shape (N m, entries)."""
+        """Return the entries of the derivatives from those of df/dx at the Gauss points, shape (N m, entries)."""
         m = self.rule.degree
         ratio = scale[self.pattern.columns] / scale[self.pattern.indices]
         scaled = (jacobian * ratio).reshape(self.count, m, 1, -1)
@@ -85,14 +86,14 @@ class SparseEquations:
         return np.concatenate([one.reshape(-1), two.reshape(-1)])
 
     def closed(self, entries: np.ndarray, closure: float) -> sp.csc_array:
-        """F_u by the values at the nodes: what belongs to the last node of all stands, times the closure, with the first one."""
+        """Return the derivatives by the values at the nodes, with the last node replaced by `closure` times the first one."""
         last = self.columns >= self.states
         columns = np.where(last, self.columns - self.states, self.columns)
         values = np.where(last, closure * entries, entries)
         return sp.csc_array((values, (self.rows, columns)), shape=(self.states, self.states))
 
     def opened(self, entries: np.ndarray) -> tuple[sp.csc_array, sp.csc_array]:
-        """By the values at the first node, and by those at all others: the equations as they stand if the first node is given."""
+        """Return the derivatives by the values at the first node, and by those at all others, without closure."""
         first = self.columns < self.node
         start = sp.csc_array(
             (entries[first], (self.rows[first], self.columns[first])), shape=(self.states, self.node)
@@ -107,7 +108,7 @@ class SparseEquations:
 def solve_bordered(
     matrix: sp.csc_array, columns: np.ndarray, rows: np.ndarray, corner: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    """Solve [[matrix, columns], [rows, corner]] x = sides; solutions and the sign of the determinant.
+    """Solve [[matrix, columns], [rows, corner]] x = sides; return solutions and the sign of the determinant.
 
     Parameters
     ----------
@@ -135,12 +136,14 @@ def solve_bordered(
 def leading_multipliers(
     equations: SparseEquations, entries: np.ndarray, speed: np.ndarray | None
 ) -> tuple[np.ndarray, float]:
-    """The largest multipliers, without the trivial one where the speed at the first node is given, and by how much that one misses 1.
+    """Return the largest multipliers, and the distance of the computed trivial multiplier from 1.
+
+    If the velocity at the first node, `speed`, is given (autonomous flows), the trivial multiplier is removed.
 
     Raises
     ------
     LinAlgError
-        If they do not converge.
+        If the multipliers do not converge.
     """
     d, count = equations.node, min(LEADING, equations.node - (0 if speed is None else 1))
     start, rest = equations.opened(entries)
@@ -185,7 +188,7 @@ def leading_multipliers(
 
 
 def distance_to_rest(pattern: Colouring, jacobian: np.ndarray, rates: np.ndarray, scale: np.ndarray) -> float:
-    """The Newton step to an equilibrium from the slowest of some points, with Jacobians (n, entries) and rates (n, d), in units of the scale."""
+    """Return the length, in units of the scale, of the Newton step to an equilibrium from the slowest of n points with Jacobians (n, entries) and rates (n, d)."""
     slow = int(np.argmin(((rates / scale) ** 2).sum(axis=1)))
     matrix = sp.csc_array((jacobian[slow], (pattern.indices, pattern.columns)), shape=(pattern.n, pattern.n))
     try:

@@ -1,6 +1,6 @@
-"""Workspaces of cycles: collocation equations with phase and mesh, and their linear algebra by orthogonal elimination.
+"""Workspaces of cycles: collocation equations with phase condition and mesh, and their linear algebra by orthogonal elimination.
 
-`CycleWork` in numpy, the reference; `CoreWork` in the native core; `SparseWork` of large flows.
+`CycleWork` is the reference in numpy, `CoreWork` uses the native core, `SparseWork` is for large flows.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ if TYPE_CHECKING:
     from .at_points import CompiledRates
     from .cycle_mesh import CycleMesh
 
-LARGEST = 707.0  # logarithms of multipliers are clamped here, where floats end
-VARYING = 4  # place of the parameter that varies in the struct `Rates`
+LARGEST = 707.0  # largest magnitude of a multiplier's logarithm, near the range of floating-point numbers
+VARYING = 4  # index of the varying parameter in the struct `Rates`
 
 
 class CycleWork:
-    """What a linearisation leaves behind, in units of the scales.
+    """Result of a linearisation.
 
-    ``self[0]`` is F, ``self[1]`` is F_p. Equations and unknowns are those of :class:`contvines.flows.cycles.CycleProblem`.
-    ``blocks`` (N, m d, (m + 1) d) are the derivatives of the collocation equations by the values at the nodes, ``by_period`` (N, m d) those
-    by the period, ``phase`` (N, m d) the row of the phase condition.
+    ``self[0]`` is F and ``self[1]`` is F_p, of the equations and unknowns of :class:`contvines.flows.cycles.CycleProblem`. The other derivatives are
+    in units of the scales: ``blocks`` (N, m d, (m + 1) d) by the values at the nodes, ``by_period`` (N, m d) by the period; ``phase`` (N, m d) is the row
+    of the phase condition.
 
     Parameters
     ----------
     problem : CycleMesh
-        Whose discretisation and scales it is; those with other values of the parameters share it.
+        Determines mesh and scales; problems with other parameter values can share the workspace.
     """
 
-    rates: CoreRates | None = None  # a right-hand side that the core calls by itself
+    rates: CoreRates | None = None  # a compiled right-hand side that the native core calls directly
 
     def __init__(self, problem: CycleMesh) -> None:
         self.problem = problem
@@ -52,17 +52,15 @@ class CycleWork:
         # mesh points, parameter, Jacobians and rates at the Gauss points
         nothing = np.zeros(0)
         self.along: tuple[np.ndarray, float, np.ndarray, np.ndarray] = nothing, math.nan, nothing, nothing
-        self.kept: tuple[np.ndarray, np.ndarray] = (
-            nothing,
-            nothing,
-        )  # by_period and phase, while the closure is turned round
+        # by_period and phase, while the closure is changed to x_N = -x_0
+        self.kept: tuple[np.ndarray, np.ndarray] = nothing, nothing
         self.begin()
 
     def begin(self) -> None:
-        """Forget what belonged to the last linearisation."""
-        # what is left of the equations between neighbouring mesh points
+        """Discard results of the last linearisation."""
+        # condensed equations between neighbouring mesh points
         self.mesh: tuple[np.ndarray, np.ndarray] | None = None
-        # F_u as a sparse matrix in the place of its blocks, where it has been transposed (loci)
+        # for loci: the transposed F_u as a sparse matrix, used instead of the blocks
         self.full: csc_array | None = None
         self.closure, self.corner = 1.0, 0.0
 
@@ -71,7 +69,7 @@ class CycleWork:
 
     # ------------------------------------------------------------------ equations
     def at_gauss_points(self, x: np.ndarray) -> np.ndarray:
-        """The states at the Gauss points, shape (N m, d)."""
+        """Return the states at the Gauss points, shape (N m, d)."""
         return mesh.at_gauss_points(self.problem.rule.values, x)
 
     def assemble(
@@ -83,7 +81,15 @@ class CycleWork:
         jacobian: np.ndarray,
         slope: np.ndarray | None,
     ) -> float:
-        """Residual, derivatives and phase condition; returns the length that the row of the phase condition had, NaN where a number is not finite."""
+        """Compute residual, derivatives and phase condition; return the length of the phase condition's row before it is normalised, or NaN if a number is not finite.
+
+        Parameters
+        ----------
+        x, widths, period
+            Values at the nodes (N, m, d), widths (N,), period.
+        f, jacobian, slope : ndarray
+            f, df/dx and df/dp at the Gauss points, shapes (N m, d), (N m, d, d), (N m, d); slope is None for forced flows.
+        """
         problem = self.problem
         r, scale, states = problem.rule, problem.node_scale, problem.states
         if not math.isfinite(f.sum() + jacobian.sum() + (0.0 if slope is None else slope.sum())):
@@ -101,14 +107,14 @@ class CycleWork:
         return size
 
     def _fill(self, steps: np.ndarray, jacobian: np.ndarray) -> None:
-        """Derivatives by the nodes, from the lengths of the intervals and df/dx at the Gauss points."""
+        """Compute the derivatives by the values at the nodes from the durations of the intervals and df/dx at the Gauss points."""
         scale = self.problem.node_scale
         each = np.repeat(steps, self.problem.rule.degree)[:, None, None]
         self.blocks[:] = self.problem.rule.blocks(each * jacobian * (scale / scale[:, None]))
 
     # ------------------------------------------------------------------ linear algebra
     def bordered(self, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray) -> float:
-        """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant."""
+        """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); return the sign of the determinant."""
         problem = self.problem
         columns = np.append(problem.column_scale, problem.parameter_scale)
         sides = np.zeros((len(border), 2))
@@ -127,14 +133,12 @@ class CycleWork:
     def _eliminated(
         self, border: np.ndarray, column: np.ndarray, sides: np.ndarray
     ) -> tuple[np.ndarray, float]:
-        """In units of the scales: what is shared by all intervals is a border of the equations at the Gauss points."""
+        """Solve the bordered system, in units of the scales, by elimination: period and parameter are shared columns, phase and border are shared rows."""
         problem = self.problem
         count, states, k = problem.intervals, problem.states, problem.free_period + 1
         inner, tail = states // count, problem.held
-        # the mesh keeps its widths: those rows are the identity
-        widths = np.concatenate(
-            [-column[tail, None], sides[tail]], axis=1
-        )  # by the parameter, then of each side
+        # the rows of the widths are the identity; the columns are the parameter's, then one of each right-hand side
+        widths = np.concatenate([-column[tail, None], sides[tail]], axis=1)
         columns = np.empty((count, inner, k + 2))
         rows, foot = np.zeros((count, k, inner)), np.zeros((k, k + 2))
         if k == 2:
@@ -154,7 +158,7 @@ class CycleWork:
     def _solved(
         self, columns: np.ndarray, rows: np.ndarray, foot: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, float]:
-        """Values at the nodes, shared unknowns, sign of the determinant."""
+        """Solve the collocation equations: values at the nodes, shared unknowns, sign of the determinant."""
         solved = solve_collocation(self.blocks, columns, rows, foot, self.problem.node, self.closure)
         self.mesh = solved.left, solved.right
         return solved.states, solved.shared, solved.sign
@@ -167,12 +171,12 @@ class CycleWork:
 
         whole = bmat([[self.full, column[:, None]], [border[None, :-1], border[None, -1:]]], format="csc")
         try:
-            return splu(whole).solve(sides), 0.0  # nobody asks for the sign
+            return splu(whole).solve(sides), 0.0  # the sign is not needed for transposed equations
         except RuntimeError as error:
             raise np.linalg.LinAlgError(str(error)) from error
 
     def matrix(self) -> csc_array:
-        """F_u as a sparse matrix, in units of the scales."""
+        """Return F_u as a sparse matrix, in units of the scales."""
         from scipy.sparse import csc_array
 
         if self.full is not None:
@@ -194,37 +198,37 @@ class CycleWork:
         return csc_array((values, (i, j)), shape=(size, size))
 
     def condensed(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is left of the equations between neighbouring mesh points, L x_i + R x_(i + 1): L and R, shape (N, d, d), in units of the scales."""
+        """Return the condensed equations between neighbouring mesh points, L x_i + R x_(i + 1): L and R, shape (N, d, d), in units of the scales."""
         if self.mesh is None:
             found = condense(self.blocks, np.zeros((*self.blocks.shape[:2], 0)), self.problem.node)
             self.mesh = found.left, found.right
         return self.mesh
 
-    # ------------------------------------------------------------------ what is known of the motions beside the cycle
+    # ------------------------------------------------------------------ multipliers, distance from equilibria
     def spectrum(self) -> tuple[np.ndarray, float]:
-        """Multipliers, of autonomous flows without the trivial one, and by how much that one, as computed, misses 1."""
+        """Return the multipliers, for autonomous flows without the trivial one, and the distance of the computed trivial one from 1."""
         left, right = self.condensed()
         if not self.problem.free_period and self.problem.n_multipliers > 1:
             return multipliers_of(left, right), 0.0
         found = self._across() if self.problem.free_period else None
         missed = 0.0 if found is None else abs(found[1] - 1.0)
         if self.problem.n_multipliers == 1:
-            # Liouville: stiff parts of a cycle are passed in intervals in which collocation contracts less than the flow does
+            # by Liouville's formula: in stiff parts of the cycle collocation contracts less than the flow
             value = complex(math.exp(min(max(self.growth_of_volume(), -LARGEST), LARGEST)))
             return np.array([value]), missed
-        if found is None:  # a cycle that is an equilibrium: all motions are as slow as none
+        if found is None:  # the cycle is an equilibrium: there is no plane across its motion
             values = multipliers_of(left, right)
             return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
         maps = found[0]
         return multipliers_of(maps, np.broadcast_to(-np.eye(maps.shape[1]), maps.shape)), missed
 
     def growth_of_volume(self) -> float:
-        """Logarithm of the product of all multipliers: the integral of the trace of the Jacobian over the cycle (Liouville)."""
+        """Return the logarithm of the product of all multipliers: the integral of the trace of df/dx over the cycle (Liouville)."""
         shares = (self.steps[:, None] * self.problem.rule.weights).reshape(-1)
         return float(shares @ np.trace(self.along[2], axis1=1, axis2=2))
 
     def _across(self) -> tuple[np.ndarray, float] | None:
-        """Maps between the planes across the motion, and the trivial multiplier, as computed; None where nothing moves."""
+        """Maps between the planes across the motion, and the computed trivial multiplier; None if the cycle is an equilibrium."""
         points, p, _, _ = self.along
         field = self.problem.field
         speeds = field(points, p) / self.problem.node_scale
@@ -234,8 +238,9 @@ class CycleWork:
         return self.planes(*self.condensed(), speeds)
 
     def planes(self, left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
-        """Maps from each mesh point to the next one between the planes across the motion, (N, d - 1, d - 1), and the factor by which the
-        direction of motion grows round the cycle: the trivial multiplier, as computed.
+        """Return the maps between the planes across the motion at successive mesh points, (N, d - 1, d - 1), and the computed trivial multiplier.
+
+        The latter is the factor by which a perturbation along the motion grows over the cycle.
 
         Raises
         ------
@@ -251,14 +256,14 @@ class CycleWork:
         return np.matmul(there.transpose(0, 2, 1), np.matmul(steps, here)), float(np.prod(growth))
 
     def distance_to_rest(self) -> float:
-        """The shortest Newton step to an equilibrium from the Gauss points, in units of the scale; infinite if there is none."""
+        """Return the length of the shortest Newton step to an equilibrium from the Gauss points, in units of the scale; infinite if there is none."""
         _, _, jacobian, f = self.along
         scale = self.problem.node_scale
         return distance_to_rest(jacobian * (scale / scale[:, None]), f / scale)
 
 
 def distance_to_rest(matrices: np.ndarray, rates: np.ndarray) -> float:
-    """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d); infinite if there is none."""
+    """Return the length of the shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d); infinite if there is none."""
     try:
         steps = np.linalg.solve(matrices, rates[..., None])[..., 0]
     except np.linalg.LinAlgError:  # one of them is singular to the last bit
@@ -268,7 +273,7 @@ def distance_to_rest(matrices: np.ndarray, rates: np.ndarray) -> float:
 
 
 class SparseWork(CycleWork):
-    """Of large flows whose Jacobian is sparse: ``entries`` are those of the derivatives by the nodes."""
+    """Workspace of large flows with a sparse Jacobian; ``entries`` are the derivatives by the values at the nodes."""
 
     def __init__(self, problem: CycleMesh, equations: sparse.SparseEquations) -> None:
         super().__init__(problem)
@@ -292,14 +297,14 @@ class SparseWork(CycleWork):
         return found[:states], found[states:], sign
 
     def spectrum(self) -> tuple[np.ndarray, float]:
-        """The leading ones."""
+        """Return the leading multipliers, and the distance of the computed trivial one from 1."""
         points, p, _, _ = self.along
         problem = self.problem
         speed = problem.field(points[:1], p)[0] / problem.node_scale if problem.free_period else None
         return sparse.leading_multipliers(self.equations, self.entries, speed)
 
     def distance_to_rest(self) -> float:
-        """From the slowest of the Gauss points."""
+        """Return the length of the Newton step to an equilibrium from the slowest of the Gauss points."""
         _, _, jacobian, f = self.along
         return sparse.distance_to_rest(self.equations.pattern, jacobian, f, self.problem.node_scale)
 
@@ -315,7 +320,7 @@ class CoreRates:
         self.record = pack(*compiled.addresses, q, 0, *arrays)
 
     def assign(self, values: ParameterSet, p: float) -> None:
-        """Say which parameter varies, and give all of them their values: problems over several parameters share a workspace (loci)."""
+        """Set the varying parameter and all values; needed before each evaluation, since problems with different varying parameters share a workspace (loci)."""
         varying = list(values.values).index(values.varying)
         self.parameters[:] = [*values.values.values()]
         self.parameters[varying] = p
@@ -323,7 +328,7 @@ class CoreRates:
 
 
 class CoreWork(CycleWork):
-    """In the native core: calls of native/collocation.hpp that fill the same arrays."""
+    """Workspace of the native core: the functions of native/collocation.hpp fill the same arrays."""
 
     def __init__(self, problem: CycleMesh) -> None:
         super().__init__(problem)
@@ -356,7 +361,8 @@ class CoreWork(CycleWork):
         ]
         rules = [r.values, r.slopes, r.weights, np.array(problem.node_scale)]
         numbers = problem.clock, problem.parameter_scale
-        self.arrays = rules, own, elimination  # kept as long as the record points to them
+        # references keep the arrays alive: the record has their addresses
+        self.arrays = rules, own, elimination
         self.record = pack(count, m, d, problem.free_period, *rules, *numbers, *own, *elimination)
         self.at = address(self.record)
         self._points = function("core_cycle_points", NOTHING, POINTER, POINTER)
@@ -369,7 +375,7 @@ class CoreWork(CycleWork):
         self._planes = function("core_cycle_across", NUMBER, *[POINTER] * 3)
 
     def at_gauss_points(self, x: np.ndarray) -> np.ndarray:
-        """In an array that is used again."""
+        """Return the states at the Gauss points, in an array that the next call overwrites."""
         x = np.ascontiguousarray(x, dtype=float)
         self._points(self.at, address(x))
         return self.points
@@ -383,19 +389,19 @@ class CoreWork(CycleWork):
         jacobian: np.ndarray,
         slope: np.ndarray | None,
     ) -> float:
-        """Of the states that were asked for at the Gauss points last."""
+        """As :meth:`CycleWork.assemble`, for the states of the last call of `at_gauss_points`."""
         by = None if slope is None else np.ascontiguousarray(slope, dtype=float)
         return self._assemble(
             self.at, place(widths), period, place(f), place(jacobian), None if by is None else address(by)
         )
 
     def evaluate(self, x: np.ndarray, widths: np.ndarray, period: float, rates: CoreRates) -> float:
-        """`assemble` with what a compiled right-hand side gives at the Gauss points."""
+        """Evaluate a compiled right-hand side at the Gauss points, and `assemble`."""
         x = np.ascontiguousarray(x, dtype=float)
         return self._evaluate(self.at, address(rates.record), address(x), place(widths), period)
 
     def bordered(self, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray) -> float:
-        """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant."""
+        """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); return the sign of the determinant."""
         if self.full is not None:
             return super().bordered(border, n, step, tangent)
         self.mesh = self.left, self.right
@@ -414,14 +420,14 @@ class CoreWork(CycleWork):
         return maps, product
 
     def distance_to_rest(self) -> float:
-        """Where a Jacobian is singular, in numpy."""
+        """As :meth:`CycleWork.distance_to_rest`; if a Jacobian is singular, numpy computes it."""
         _, _, jacobian, f = self.along
         found = self._distance(self.at, place(f), place(jacobian))
         return found if found >= 0.0 else super().distance_to_rest()
 
 
 def workspace(problem: CycleMesh) -> CycleWork:
-    """The workspace for a problem of cycles."""
+    """Return the workspace for a problem of cycles."""
     if problem.sparse is not None:
         return SparseWork(problem, problem.sparse)
     return CoreWork(problem) if native() else CycleWork(problem)
