@@ -1,1 +1,1 @@
-"""Invariant circles beside Neimark-Sacker points: modulated motions, from the normal form on until they break."""
+"""Invariant circles near Neimark-Sacker points (modulated motions): from the normal form to their breakdown."""

@@ -1,8 +1,8 @@
-"""From circle to circle: by growing amplitude at first, then along the curve of circles where the amplitude turns back.
+"""Family: continuation of invariant circles, first with growing amplitude, then along the family beyond a maximum of the amplitude.
 
-Unknowns of a circle are its points, its rotation number and the parameter. Near its birth the amplitude is a good parameter of the family. Near a
-saddle, where circles born beside a strong resonance end, the motion lingers and its first harmonic shrinks again, while the circle goes
-on: there each circle is looked for on the plane across the last change of (amplitude, rotation, parameter).
+The unknowns of a circle are its points, its rotation number and the parameter. Near the birth of the circles the amplitude is a good parameter of the
+family. Near a saddle, where circles born next to a strong resonance end, the motion becomes slow and its first harmonic decreases again while the circle
+grows on. There the next circle is computed in the plane perpendicular to the last change of (amplitude, rotation, parameter).
 """
 
 from __future__ import annotations
@@ -36,28 +36,44 @@ from .section import Imaged, Section, section_of, slopes
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
-FEWEST, MOST = 17, 257  # points of a circle
-LESS = 0.25  # by which twice the points make the last harmonics smaller at least: a circle that meets a border has no more derivatives to show
-# first amplitude relative to the last one, factors from one to the next
+FEWEST, MOST = 17, 257  # fewest and most points of a circle
+LESS = 0.25  # doubling the points must reduce the last harmonics by this factor; if it does not, the circle touches a border and is not smooth
+# first amplitude relative to the last one; largest and smallest ratio of successive amplitudes
 FIRST, GROWTH, SLOWEST = 0.04, 1.35, 1.05
-LONGEST = 0.3  # step along the family, where amplitude, rotation and distance from the birth count 1 each
-# times the step: longer ones leap over motions locked at a rational rotation
+LONGEST = 0.3  # largest step along the family, in units of amplitude, rotation and distance from the birth
+# factors of the step that are tried in turn; longer steps can pass a rational rotation at which motions lock
 TRIES = (1.0, 0.5, 1.6, 0.25, 2.4, 0.12, 0.06)
-LEAST = 0.01  # steps below this go nowhere
-# distance of a rotation number from n/q, times q^2: where it is that near, motions lock; largest q
+LEAST = 0.01  # smallest step along the family
+# distance of a rotation number from n/q, times q^2, below which motions lock; largest q
 LOCKED, PERIODS = 0.05, 40
-# of the radius: where motions so far outside do not come back to the section, no larger circle is seen there
+# distance outside the circle, relative to its radius, at which motions are tested: if they do not return, there is no larger circle
 OUTWARDS = 0.1
-LINGERS = 0.5  # part of its rotation at birth below which a circle's motion is said to linger
+# a circle ends near another cycle if its rotation number is below this part of that at its birth
+LINGERS = 0.5
 
 Sections = Callable[[float], Section]
 
 
 class Birth(NamedTuple):
-    """The normal form on the section.
+    """The normal form of the circles, on the section.
 
+    Attributes
+    ----------
+    p : float
+        Parameter value of the birth.
+    coefficient : float
+        First Lyapunov coefficient.
+    growth : float
+        d(log abs(multiplier))/dp.
+    rotation : float
+        Rotation number at the birth.
+    vector : ndarray of complex, shape (d,)
+        Critical eigenvector of the section's map.
+    frame : Frame
+    centre : ndarray, shape (d,)
+        The cycle on the section.
     size : float
-        Amplitude on the section per amplitude of the normal form.
+        Ratio of the amplitude on the section to that of the normal form.
     """
 
     p: float
@@ -70,23 +86,23 @@ class Birth(NamedTuple):
     size: float
 
     def value(self, amplitude: float) -> float:
-        """The parameter at which the circle has this amplitude, to lowest order."""
+        """Return the parameter at which the circle has a given amplitude, to lowest order."""
         return self.p - self.coefficient * (amplitude / self.size) ** 2 / self.growth
 
     def amplitude(self, value: float) -> float:
-        """The amplitude at a parameter value; 0 on the other side."""
+        """Return the amplitude at a parameter value, to lowest order; 0 on the side without circles."""
         square = -self.growth * (value - self.p) / self.coefficient
         return self.size * float(np.sqrt(max(square, 0.0)))
 
     def curve(self, amplitude: float, count: int) -> Curve:
-        """The circle of an amplitude, to first order."""
+        """Return the circle of a given amplitude, to first order, through `count` points."""
         phases = 2.0 * np.pi * np.arange(count) / count
         points = self.centre + 2.0 * amplitude * np.real(np.exp(1j * phases)[:, None] * self.vector)
         return Curve(points, self.rotation, self.value(amplitude))
 
 
 def anchored(point: SpecialPoint) -> Problem:
-    """The problem of a point; of cycles on a mesh the one that begins with the point, across whose cycle sections are taken."""
+    """Return the problem of a point; for cycles of a flow one that starts at the point, so that the section is the plane across this cycle."""
     problem = point.attached
     if not isinstance(problem, CycleProblem):
         return problem
@@ -94,12 +110,12 @@ def anchored(point: SpecialPoint) -> Problem:
 
 
 def born(point: SpecialPoint, problem: Problem) -> Birth:
-    """The normal form of the circles beside a point, whose problem is that of `anchored`.
+    """Compute the normal form of the circles near a point; `problem` is the result of `anchored`.
 
     Raises
     ------
     ValueError
-        If it does not decide where they are.
+        At a strong resonance, if the first Lyapunov coefficient is zero within its error, or if the multipliers do not cross the unit circle.
     """
     u, p = point.u, float(point.value)
     multiplier, growth = _crossing(point)
@@ -112,8 +128,8 @@ def born(point: SpecialPoint, problem: Problem) -> Birth:
     section = section_of(problem, p)
     centre = section.through(u)
     size = float(np.linalg.norm(centre)) or 1.0
-    known = isinstance(section, Imaged)
-    matrix = section.images(centre[None])[1][0] if known else slopes(section, centre, CIRCLES.step * size)
+    exact = isinstance(section, Imaged)
+    matrix = section.images(centre[None])[1][0] if exact else slopes(section, centre, CIRCLES.step * size)
     values, right = np.linalg.eig(matrix)
     place = int(np.argmin(np.abs(values - full)))
     vector = right[:, place] / np.linalg.norm(right[:, place])
@@ -139,7 +155,7 @@ def born(point: SpecialPoint, problem: Problem) -> Birth:
 
 
 def _image(section: Section, forms: Forms, multiplier: complex, u: np.ndarray) -> np.ndarray:
-    """The critical vector of the unknowns as a direction of points of the section."""
+    """The critical eigenvector of the problem as a direction on the section."""
     q = forms.null(multiplier / abs(multiplier))[0] * forms.units
     h = CIRCLES.step * (float(np.linalg.norm(u)) or 1.0)
     along = [
@@ -150,7 +166,7 @@ def _image(section: Section, forms: Forms, multiplier: complex, u: np.ndarray) -
 
 
 def _crossing(point: SpecialPoint) -> tuple[complex, float]:
-    """The raw critical multiplier, and d(log abs)/dp along the cycles."""
+    """The raw critical multiplier, and the derivative of the logarithm of its magnitude by p along the cycles."""
     problem, p = point.attached, float(point.value)
     unit = max(abs(p), CIRCLES.least_parameter)
     engine = Engine(problem, (p - unit, p + unit), Settings())
@@ -181,7 +197,7 @@ def _crossing(point: SpecialPoint) -> tuple[complex, float]:
 
 @dataclass(eq=False)
 class Family:
-    """The circles beside a point, as far as they are followed.
+    """The family of circles that is born at a point, and its continuation.
 
     Attributes
     ----------
@@ -189,17 +205,17 @@ class Family:
         Parameter value -> section.
     birth : Birth
     amplitude : float
-        The largest one, where no end is given.
+        Largest amplitude, if `to` is None.
     to : float or None
-        Parameter value.
+        Parameter value at which the family ends.
     side : float
-        1 where circles lie above the parameter of their birth, -1 below.
+        1 if the circles lie above the parameter value of their birth, -1 if below.
     count : int
-        How many at most.
+        Most circles.
     name : str
-        Of the parameter.
+        Name of the parameter.
     found : list of Curve
-        So far, in order.
+        Circles found so far, in order.
     """
 
     section: Sections
@@ -212,11 +228,11 @@ class Family:
     found: list[Curve] = field(default_factory=list)
 
     def follow(self) -> str:
-        """Circles of growing amplitude, then along their family; and why there are no more."""
+        """Compute circles of growing amplitude, then along their family; return the sentence why the family ends."""
         return self._growing() or self._onwards()
 
     def _growing(self) -> str | None:
-        """By their amplitude, until that will not do; then the sentence is None."""
+        """Continue by growing amplitude; return the sentence why the family ends, or None if a larger amplitude is not found."""
         amplitude, factor, points, frame = FIRST * self.amplitude, GROWTH, FEWEST, self.birth.frame
         while len(self.found) < self.count:
             curve, _ = self._smooth(self._larger(amplitude, points), of_amplitude(amplitude))
@@ -243,7 +259,7 @@ class Family:
         return self._enough()
 
     def _onwards(self) -> str:
-        """Along the family, as far as circles are smooth."""
+        """Continue along the family; return the sentence why it ends."""
         step, found = LONGEST, self.found
         while len(found) < self.count:
             before = self.birth.curve(0.0, len(found[-1].points)) if len(found) == 1 else found[-2]
@@ -263,7 +279,7 @@ class Family:
         return self._enough()
 
     def _arrived(self, curve: Curve, amplitude: float) -> str | None:
-        """Keeps a circle, or the one at the end of the way, which is said then."""
+        """Add a circle; at the end of the requested interval or amplitude, return the sentence for it (else None)."""
         if self.to is not None and (curve.value - self.to) * self.side >= 0.0:
             last = solve(self.section, curve._replace(value=self.to), self.birth.frame, at_value(self.to))
             self.found += [] if last is None else [last]
@@ -277,7 +293,7 @@ class Family:
         return f"stopped after {self.count} circles at {self.name} = {self.found[-1].value:.8g}"
 
     def _broken(self, last: Curve, torn: bool) -> str:
-        """Why circles end."""
+        """Sentence why circles end after the last one."""
         at, born = f"near {self.name} = {last.value:.8g}", self.birth.rotation
         if abs(last.rotation) < LINGERS * abs(born):
             return (
@@ -300,7 +316,7 @@ class Family:
         return f"the circle breaks {at}: {why}"
 
     def _larger(self, amplitude: float, count: int) -> Curve:
-        """The next circle from the last two: harmonics are linear in the amplitude, rotation and parameter in its square."""
+        """Predict the next circle from the last two: points linear in the amplitude, rotation and parameter linear in its square."""
         if not self.found:
             return self.birth.curve(amplitude, count)
         last, frame = self.found[-1].finer(count), self.birth.frame
@@ -312,7 +328,7 @@ class Family:
         return last.beyond(before, share, bend)
 
     def _next(self, before: Curve, last: Curve, step: float) -> tuple[Curve, Condition]:
-        """A guess in the direction of the last change, and the plane across it in which the circle is looked for."""
+        """Predict the next circle in the direction of the last change; return it with the condition of the plane perpendicular to this direction."""
         here, there = (
             np.array([first_harmonic(curve, self.birth.frame).real, curve.rotation, curve.value])
             for curve in (last, before)
@@ -326,7 +342,7 @@ class Family:
         return guess, Condition((a, b, c), target)
 
     def _smooth(self, guess: Curve, condition: Condition) -> tuple[Curve | None, bool]:
-        """The circle through as many points as it needs, or whether what was found at so many points is no smooth closed curve."""
+        """Solve for a circle with enough points; return it (None if there is none), and whether the solution found is no smooth closed curve."""
         frame, before, curve = self.birth.frame, None, solve(self.section, guess, self.birth.frame, condition)
         while curve is not None:
             worse = before is not None and LESS * before.tail < curve.tail and before.tail < CIRCLES.torn

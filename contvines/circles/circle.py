@@ -1,4 +1,4 @@
-"""Circle and Circles: invariant circles as data."""
+"""Circle and Circles: invariant circles as data that are shown and saved."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Circle:
-    """An invariant circle at one parameter value: a modulated motion, seen once per period of its cycle.
+    """An invariant circle of the section's map at one parameter value: a modulated motion, seen once per period of its cycle.
 
     Attributes
     ----------
@@ -30,22 +30,21 @@ class Circle:
     radius : float
         Root mean square distance of the circle from its centre, in the coordinates of the section.
     predicted : float
-        What the normal form says of it.
+        Radius by the normal form.
     rotation : float
-        Rotation number: turns round the circle per period of the cycle.
+        Rotation number: turns around the circle per period of the cycle.
     points : ndarray, shape (n, d)
-        On the section, at equal steps of the phase in which the motion turns evenly.
+        Points on the section at equal steps of the phase; the map advances the phase by 2 pi rotation.
     tail : float
-        The last harmonics relative to the first: how smooth the circle is.
+        Size of the last harmonics relative to the first, a measure of smoothness.
     residual : float
-        Of the invariance equation, relative to the radius.
+        Residual of the invariance equation, relative to the radius.
     replay : float
-        Largest distance between the circle and a simulation that is started on it, after a period, between the points at which
-        the circle was solved for.
+        Largest distance from the circle after one simulated period, from starts between the points at which the circle was solved.
     simulated : float or None
-        Rotation number of a simulation that has settled; None where it settles on something else.
+        Rotation number of a settled simulation; None if it settles on another motion, or if the circle is not stable.
     stable : bool or None
-        Whether a displaced simulation comes back; None where that cannot be determined.
+        Whether a displaced simulation returns to the circle; None if that cannot be determined.
     """
 
     value: float
@@ -60,11 +59,11 @@ class Circle:
     stable: bool | None = None
 
     def at(self, phases: np.ndarray) -> np.ndarray:
-        """Points of the section at phases in radians, shape (m, d)."""
+        """Return the points of the circle at phases in radians, shape (m, d)."""
         return Curve(self.points, self.rotation, self.value).at(phases)
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-able."""
+        """Return the circle as a JSON-able dict, without its points."""
         return {
             "value": self.value,
             "radius": self.radius,
@@ -86,27 +85,27 @@ class Circles:
     Attributes
     ----------
     label : str
-        Of the point.
+        Label of the Neimark-Sacker point.
     parameter : str
     value : float
         Parameter value of the point.
     rotation : float
-        Rotation number there.
+        Rotation number at the point.
     coefficient : float
         First Lyapunov coefficient, Re d of z -> m z (1 + d z z* + ...) (Kuznetsov, section 4.7).
     growth : float
-        d(log abs(multiplier))/dp there; the normal form has radius^2 proportional to -growth (p - value)/coefficient.
+        d(log abs(multiplier))/dp at the point; by the normal form radius^2 is proportional to -growth (p - value)/coefficient.
     names : tuple of str
         Coordinates of the section.
     centre : ndarray, shape (d,)
         The cycle at the point, on the section.
     circles : tuple of Circle
     ended : str
-        Why the last one is the last: a sentence.
+        Sentence why there are no more circles.
     beyond : dict
-        What a simulation settles on a little beyond it: "value", "kind" and, of a locked motion, "periods".
+        Motion on which a simulation a little beyond the last circle settles: "value", "kind" and, for a locked motion, "periods".
     notation : dict
-        Labels of axes by name of parameter or coordinate.
+        Axis labels by name of parameter or coordinate.
     """
 
     label: str
@@ -149,7 +148,7 @@ class Circles:
         return np.array([circle.rotation for circle in self.circles])
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-able."""
+        """Return the circles as a JSON-able dict."""
         return {
             "label": self.label,
             "parameter": self.parameter,
@@ -197,7 +196,7 @@ class Circles:
         return Table(head, rows, ("replay", "normal form", "simulated"))
 
     def plot(self, coordinates: tuple[str, str] | None = None, **options: Unpack[PanelOptions]) -> Figure:
-        """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""
+        """Plot the section, the radius and the rotation number; see :func:`contvines.plots.circles.plot_circles`."""
         from ..plots.circles import plot_circles
 
         return plot_circles(self, coordinates, **options)

@@ -1,4 +1,4 @@
-"""Circles from a Neimark-Sacker point on: normal form, invariance equation, simulation."""
+"""Invariant circles of a Neimark-Sacker point: normal form, continuation, and comparison with simulations."""
 
 from __future__ import annotations
 
@@ -19,40 +19,33 @@ from .circle import Circle, Circles
 from .invariance import CIRCLES, Curve, between, rotation_number
 from .section import Section, Watched, section_of
 
-REACH = (
-    0.5  # amplitude, relative to the size of the section, to which circles are followed where no end is given
-)
-COUNT = 40  # circles at most
-RETURNS = 3000  # of a simulation that is compared with a circle, at most
-FIRST = (
-    375  # ... after which, and after twice as many again, its rotation number is asked whether it has settled
-)
-PATIENCE = 6000  # returns at most until it settles
-LONGEST = 200  # periods of a locked motion
-LOOK = (
-    200  # returns after which, and after twice as many again, it is asked whether growth or decay is clear;
-)
-ROUNDS, RESONANCES = (
-    4,
-    6,
-)  # turns of the drift beside a resonance of this order at most, that they cover at least
-CLEAR = 5.0  # factor from the largest displacement of their first half to that of their second
+# largest amplitude, relative to the size of the section, if no parameter value is given as the end
+REACH = 0.5
+COUNT = 40  # default for the most circles
+RETURNS = 3000  # most returns of a simulation on a circle ...
+FIRST = 375  # ... whose rotation number is tested for convergence after so many returns, then each time after twice as many
+PATIENCE = 6000  # most returns until a simulation settles
+LONGEST = 200  # most periods of a locked motion
+LOOK = 200  # returns after which a displacement is tested for growth or decay, then each time after twice as many; ...
+# ... at least so many turns of the slow drift next to a resonance of at most this order
+ROUNDS, RESONANCES = 4, 6
+CLEAR = 5.0  # ratio of the largest displacements in the two halves at which growth or decay is clear
 
 
 @hinting
 @listening()
 def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) -> Circles:
-    """The invariant circles beside a Neimark-Sacker point, until they break.
+    """Compute the invariant circles that are born at a Neimark-Sacker point, until they break.
 
     Parameters
     ----------
     point : SpecialPoint
-        Of kind "neimark-sacker".
+        A point of kind "neimark-sacker".
     to : float, optional
-        Parameter value up to which they are followed, on the side on which they exist; if left out, until their amplitude is half the
+        Parameter value at which to stop, on the side of the circles; by default they are continued until their amplitude is half the
         size of the motion.
     count : int
-        How many at most.
+        Most circles.
 
     Returns
     -------
@@ -61,7 +54,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     Raises
     ------
     ValueError
-        If there is no circle, its normal form does not decide, or the motion cannot be simulated; the sentence says why.
+        If no circle is found, the normal form is degenerate, or the motion cannot be simulated.
     """
     if point.kind != "neimark-sacker":
         raise ValueError(
@@ -105,15 +98,17 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     )
 
 
-# ---------------------------------------------------------------------- by simulation
+# ---------------------------------------------------------------------- comparison with simulations
 def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> Circle:
+    """A circle as data, with its replay, stability and simulated rotation number."""
     here = section(curve.value)
     centre = curve.points.mean(axis=0)
     radius = float(np.sqrt(np.mean(np.sum((curve.points - centre) ** 2, axis=1))))
     replay = between(here, curve)
     stable = _attracts(here, curve, birth, centre)
     simulated = _simulated(here, curve, birth, centre, radius) if stable else None
-    if stable and simulated is None:  # a displacement shrank for a while, and yet the circle is left
+    # the displacement decreased at first, but the simulation leaves the circle
+    if stable and simulated is None:
         stable = None
     amplitude = birth.amplitude(curve.value)
     predicted = float(np.sqrt(2.0) * amplitude)  # rms of 2 Re(r q exp(i phi)) with abs(q) = 1
@@ -134,7 +129,7 @@ def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> 
 def _displacements(
     here: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray
 ) -> Iterator[float]:
-    """log of (distance along the critical plane from the centre / that of the circle at the same angle), per return."""
+    """Generate, for each return, log(distance of the motion from the centre / distance of the circle at the same angle), in the critical plane."""
     own = (curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - centre) @ birth.frame.left.conj()
     angles = np.unwrap(np.angle(own))
     if angles[-1] < angles[0]:
@@ -146,7 +141,7 @@ def _displacements(
 
 
 def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
-    """Whether a motion that is displaced outwards comes back to the circle."""
+    """Whether a motion that is displaced outwards returns to the circle; None if that is not clear."""
     rate = 2.0 * abs(birth.growth * (curve.value - birth.p))
     count = int(min(_returns(here, PATIENCE), max(200, 2.0 / max(rate, 1.0 / PATIENCE))))
     start = curve.points[0] + CIRCLES.displaced * (curve.points[0] - centre)
@@ -168,18 +163,18 @@ def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> 
 
 
 def _returns(here: Section, most: int) -> int:
-    """Returns of a simulation, as many as its section has time for."""
+    """Most returns of a simulation: `most`, or the section's own limit if its steps are expensive."""
     return min(most, here.returns_watched) if isinstance(here, Watched) else most
 
 
 def _slowest(rotation: float) -> float:
-    """Turns per return of the slow drift beside a resonance, where a displacement grows and shrinks once in a turn."""
+    """Turns per return of the slow drift next to a resonance; a displacement grows and shrinks once in each turn."""
     drifts = [abs(q * rotation - round(q * rotation)) for q in range(1, RESONANCES + 1)]
     return max(min(drifts), 1.0 / PATIENCE)
 
 
 def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float) -> float | None:
-    """Rotation number of a simulation on the circle; None where it leaves the circle."""
+    """Rotation number of a simulation on the circle; None if it leaves the circle."""
     most = _returns(here, RETURNS)
     x, z, asked = curve.points[0], np.empty(most, dtype=complex), FIRST
     outline = curve.at(np.linspace(0.0, 2.0 * np.pi, 721))
@@ -200,7 +195,7 @@ def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, ra
 
 
 def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birth) -> dict[str, Any]:
-    """What a simulation settles on a little beyond the last circle."""
+    """The motion on which a simulation a little beyond the last circle settles; see :attr:`Circles.beyond`."""
     last = found[-1]
     before = found[-2].value if len(found) > 1 else birth.p
     value = last.value + 0.25 * (last.value - before)

@@ -1,8 +1,8 @@
 """The invariance equation of a circle: P(x(phi)) = x(phi + 2 pi rho), solved by collocation and Newton's method.
 
-x(phi) is a trigonometric polynomial through n = 2 K + 1 points. The rotation number rho and the parameter p are unknowns, too; the
-phase is fixed by a first harmonic without imaginary part, and either the first harmonic or p is given. Stable or
-not makes no difference. P is the simulated return map; its derivatives are differences where the section does not know them.
+x(phi) is a trigonometric polynomial through n = 2 K + 1 points. The rotation number rho and the parameter p are unknowns, too. The phase is fixed by
+the condition that the first harmonic is real, and one linear condition selects a circle of the family (`Condition`). The method works for stable and
+unstable circles. P is the return map of the section; its derivatives are computed by differences if the section does not provide them.
 
 Source of the method: Schilder, Osinga and Vogt, SIAM J. Appl. Dyn. Syst. 4 (2005) 459, for flows; here for section maps.
 """
@@ -18,41 +18,40 @@ import numpy as np
 from ..shared.numbers import TINY
 from .section import Imaged, Section, Varied, slopes
 
-INSIDE = (
-    0.01  # largest step of differences, relative to the size of the circle and to the distance from its birth
-)
-SWEEPS = 15
+INSIDE = 0.01  # largest step of differences, relative to the radius of the circle and to the distance from its birth
+SWEEPS = 15  # most steps of Newton's method
 
 
 @dataclass(frozen=True)
 class CircleSettings:
-    """What decides where circles are and where they end.
+    """Tolerances of invariant circles.
 
     Attributes
     ----------
     step, least_step : float
-        Differences: their length, relative to the sizes of the section, of the unknowns and of the parameter, and the least one beside a small circle.
+        Differences: step, relative to the sizes of the section, the unknowns and the parameter; smallest step near a small circle.
     crossing : tuple of float
-        Differences: lengths, relative to the size of the parameter, over which multipliers at the birth are compared; a fold, or the end of the
-        pair, may be near.
+        Differences: steps in the parameter, relative to its size, for the derivative of the multipliers at the birth; small ones are needed if a fold,
+        or the end of the pair, is near.
     least_parameter : float
-        Differences: smallest size of a parameter.
+        Differences: smallest typical size of a parameter.
     solved : float
-        Newton's method: residual, relative to the size of the circle.
+        Newton's method: residual of a solution, relative to the radius.
     rounded, rough : float
-        Newton's method: residual that does not shrink any more, relative to the size of the section, and at most relative to that of the circle.
+        Newton's method: residual accepted when rounding stops convergence, relative to the size of the section; it must also be below `rough`, relative
+        to the radius.
     beginning : float
-        Family: part of the usual first amplitude below which no circle is looked for.
+        Family: smallest first amplitude, relative to the usual one.
     smooth, torn : float
-        Ends: the last harmonics, relative to the first, of a circle that has enough points, and beyond which it has broken.
+        Ends: size of the last harmonics, relative to the first, below which a circle has enough points, and above which it is broken.
     apart : float
-        Ends: by how much its images miss a circle between its points, relative to its radius; beyond that there is none.
+        Ends: largest distance of a circle's images from it, between its points and relative to its radius.
     displaced : float
-        Simulation: displacement, relative to the radius, whose growth or decay says whether a circle is stable.
+        Simulation: displacement, relative to the radius, whose growth or decay decides the stability.
     settled : float
-        Simulation: difference of the rotation numbers of all and of half the returns that have settled.
+        Simulation: difference between the rotation numbers of all returns and of half of them at which they have converged.
     far, same : float
-        Simulation: distance of a motion that runs away, and of returns that are one, relative to the size of the section.
+        Simulation: distance at which a motion has escaped, and largest distance of equal returns, relative to the size of the section.
     """
 
     step: float = 1e-6
@@ -76,16 +75,18 @@ CIRCLES = CircleSettings()
 
 
 class Frame(NamedTuple):
-    """Where a circle is looked for: how the first harmonic is measured, and sizes.
+    """Coordinate of the critical plane, and typical sizes.
 
+    Attributes
+    ----------
     left : ndarray of complex, shape (d,)
-        Left critical vector: z = conj(left).x measures a displacement along the critical plane.
+        Left critical eigenvector: z = conj(left).x is the coordinate of a displacement in the critical plane.
     size : float
         Typical size of the section's coordinates.
     unit : float
         Typical size of the parameter.
     origin : float
-        Where the circles are born.
+        Parameter value at which the circles are born.
     """
 
     left: np.ndarray
@@ -97,8 +98,12 @@ class Frame(NamedTuple):
 class Curve(NamedTuple):
     """A closed curve on the section with its rotation number and parameter value.
 
+    Attributes
+    ----------
     points : ndarray, shape (n, d)
-        At equal steps of the phase.
+        Points at equal steps of the phase.
+    rotation, value, residual : float
+        Rotation number, parameter value, and residual relative to the radius.
     """
 
     points: np.ndarray
@@ -113,19 +118,19 @@ class Curve(NamedTuple):
 
     @property
     def tail(self) -> float:
-        """Largest of the last tenth of the harmonics, relative to the first one."""
+        """Size of the largest of the last tenth of the harmonics, relative to the first one."""
         half = len(self.points) // 2
         sizes = np.abs(self.harmonics[1 : half + 1]).max(axis=1)
         return float(sizes[-max(1, half // 10) :].max() / sizes[0])
 
     def at(self, phases: np.ndarray) -> np.ndarray:
-        """Points at phases (radians), shape (m, d)."""
+        """Return the points at phases (radians), shape (m, d)."""
         n = len(self.points)
         k = np.fft.fftfreq(n, 1.0 / n)
         return np.real(np.exp(1j * np.outer(np.asarray(phases), k)) @ self.harmonics)
 
     def beyond(self, before: Curve, share: float, bend: float) -> Curve:
-        """As far beyond this curve as it is from another one, times a share; rotation and parameter times another."""
+        """Extrapolate from another curve beyond this one: the points by the factor `share` of their difference, rotation and parameter by `bend`."""
         return Curve(
             self.points + share * (self.points - before.points),
             self.rotation + bend * (self.rotation - before.rotation),
@@ -133,30 +138,30 @@ class Curve(NamedTuple):
         )
 
     def finer(self, count: int) -> Curve:
-        """The same curve through another number of points."""
+        """Return the same curve with another number of points."""
         phases = 2.0 * np.pi * np.arange(count) / count
         return self._replace(points=self.at(phases))
 
 
 class Condition(NamedTuple):
-    """Which circle of a family is looked for: normal . (amplitude of the first harmonic, rotation number, parameter) = target."""
+    """Condition that selects a circle of a family: normal . (amplitude of the first harmonic, rotation number, parameter) = target."""
 
     normal: tuple[float, float, float]
     target: float
 
 
 def of_amplitude(amplitude: float) -> Condition:
-    """The circle whose first harmonic has an amplitude."""
+    """Return the condition of a given amplitude of the first harmonic."""
     return Condition((1.0, 0.0, 0.0), amplitude)
 
 
 def at_value(value: float) -> Condition:
-    """The circle at a parameter value."""
+    """Return the condition of a given parameter value."""
     return Condition((0.0, 0.0, 1.0), value)
 
 
 def between(section: Section, curve: Curve) -> float:
-    """By how much the images of a circle miss it, between the points at which it was solved."""
+    """Return the largest distance of simulated images of a circle from it, for points between those at which it was solved."""
     count = 2 * len(curve.points)
     phases = 2.0 * np.pi * (np.arange(count) + 0.5) / count
     images = np.array([section.step(x) for x in curve.at(phases)])
@@ -164,12 +169,12 @@ def between(section: Section, curve: Curve) -> float:
 
 
 def first_harmonic(curve: Curve, frame: Frame) -> complex:
-    """Of the displacement along the critical plane."""
+    """Return the first harmonic of a curve in the critical plane."""
     return complex(frame.left.conj() @ curve.harmonics[1])
 
 
 def _images(section: Section, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The next points (n, d), with their derivatives by the points (n, d, d) and by the parameter (n, d) where the section knows them."""
+    """The next points (n, d), their derivatives by the points (n, d, d) and by the parameter (n, d); NaN for derivatives that the section does not provide."""
     n, d = points.shape
     if isinstance(section, Imaged):
         return section.images(points)
@@ -190,7 +195,7 @@ def _differences(
     by_state: np.ndarray,
     by_value: np.ndarray,
 ) -> None:
-    """Derivatives that the section does not know, by differences of these lengths in the points and in the parameter."""
+    """Fill in missing (NaN) derivatives by differences with given steps in the points and in the parameter, in place."""
     unknown = np.flatnonzero(~np.isfinite(by_state).all(axis=(1, 2)))
     if not len(unknown):
         return
@@ -203,7 +208,7 @@ def _differences(
 def solve(
     section: Callable[[float], Section], guess: Curve, frame: Frame, condition: Condition
 ) -> Curve | None:
-    """The invariant circle near a curve; None where Newton's method does not find one.
+    """Solve for the invariant circle near a curve that fulfils a condition; None if Newton's method fails.
 
     Parameters
     ----------
@@ -215,9 +220,8 @@ def solve(
     """
     n, d = guess.points.shape
     k = np.fft.fftfreq(n, 1.0 / n)
-    fourier = (
-        np.exp(-2j * np.pi * np.outer(np.arange(n), np.arange(n)) / n) / n
-    )  # harmonics = fourier @ points
+    # harmonics = fourier @ points
+    fourier = np.exp(-2j * np.pi * np.outer(np.arange(n), np.arange(n)) / n) / n
     phases = 2.0 * np.pi * np.arange(n) / n
     first = np.exp(-1j * phases) / n
     points, rho, p = guess.points.copy(), guess.rotation, guess.value
@@ -232,9 +236,8 @@ def solve(
     last = np.inf
     for _ in range(SWEEPS):
         images, by_state, by_value = _images(section(p), points)
-        turned = (
-            np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ fourier
-        )  # values at the phases that come next
+        # matrix from the points to the values at the next phases
+        turned = np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ fourier
         shifted = np.real(turned @ points)
         z = complex(first @ (points @ frame.left.conj()))
         apart = normal[0] * z.real + normal[1] * rho + normal[2] * p - target
@@ -281,23 +284,23 @@ def solve(
 
 # ------------------------------------------------------------------ averages
 def weights(count: int) -> np.ndarray:
-    """Weights of `count` values in a row, with sum one."""
+    """Return smooth weights with sum one for an average of `count` successive values."""
     t = (np.arange(count) + 1.0) / (count + 1.0)
     bump = np.exp(-1.0 / (t * (1.0 - t)))
     return bump / bump.sum()
 
 
 def rotation_number(z: np.ndarray, near: float) -> tuple[float, float]:
-    """(turns per step, estimate of its error) of a sequence of complex numbers that goes round zero.
+    """Return the turns per step, and the estimated error, of a sequence of complex numbers that rotates around zero.
 
-    Averages along quasi-periodic sequences with the weight exp(-1/(t (1 - t))) in the place of 1 converge faster than any power of their length.
+    Averages along quasi-periodic sequences with the weight exp(-1/(t (1 - t))) converge faster than any power of their length.
     Source: Das, Saiki, Sander and Yorke, Nonlinearity 30 (2017) 4111.
 
     Parameters
     ----------
     z : ndarray of complex, shape (m,)
     near : float
-        A rotation number that is at most half a turn off.
+        Approximate rotation number, with an error below half a turn.
     """
     turns = np.angle(z[1:] / z[:-1]) / (2.0 * np.pi)
     turns = near + (turns - near + 0.5) % 1.0 - 0.5

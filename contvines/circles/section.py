@@ -1,19 +1,19 @@
-"""What invariant circles ask of a problem: its motion seen once per period, by simulation.
+"""Section: the protocol that invariant circles require of a problem's motions, seen once per period by simulation.
 
-The contract, in words:
+The contract:
 
-1. ``problem.section(p)`` returns a section of the motions at a parameter value; it knows no equations of cycles.
-2. ``section.names`` are its coordinates.
-3. ``section.through(u)`` is the point in which the motion that begins with the unknowns u meets the section, shape (d,). It is
-   smooth in u; of a cycle, it is a fixed point of ``step``.
-4. ``section.rounds(u)`` are the points in which the cycle itself meets the section, shape (periods, d), the first that of ``through``.
-5. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
-6. ``section.varied(x)``, where a section has it: the next point with its derivatives by x, shape (d, d), and by the parameter, shape
-   (d,); NaN where they are not known. Without it differences of ``step`` stand in.
-   ``section.images(points)`` does that of many points at once; of flows it is the map of which the cycle is a fixed point exactly, while ``step``
-   is a simulation. ``section.returns_watched`` are the returns of a simulation at most, where each takes long.
-7. ``section.struck(x, near)``, where a section has it: of a point at a wall, or no farther from it than `near`, the other point there from
-   which the motion goes on alike (just before and just after an impact), and the direction away from the wall; None elsewhere.
+1. ``problem.section(p)`` returns the section of the motions at a parameter value; it does not use the equations of cycles.
+2. ``section.names`` are the names of its coordinates.
+3. ``section.through(u)`` returns the point in which the motion with the initial unknowns u meets the section, shape (d,). It is
+   smooth in u; for a cycle it is a fixed point of ``step``.
+4. ``section.rounds(u)`` returns the points in which the cycle meets the section, shape (periods, d); the first is that of ``through``.
+5. ``section.step(x)`` returns the next point, one period of the cycle later, shape (d,); NaN if the motion does not return.
+6. Optional: ``section.varied(x)`` returns the next point, its derivatives by x, shape (d, d), and by the parameter, shape (d,); NaN for
+   unknown derivatives. Without it differences of ``step`` are used. ``section.images(points)`` does the same for many points at once; for flows it
+   is the map of which the cycle is exactly a fixed point, while ``step`` is a simulation. ``section.length(direction)`` is the length of a direction
+   for normal forms. ``section.returns_watched`` is the most returns of a simulation, if each is expensive.
+7. Optional: ``section.struck(x, near)`` returns, for a point at a wall or at most `near` away from it, the other point from which the same motion
+   continues (just before and just after an impact), and the direction away from the wall; None elsewhere.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from ..problems.protocol import Problem
 
 @runtime_checkable
 class Varied(Protocol):
-    """A section that knows the derivatives of its steps."""
+    """A section that provides the derivatives of its steps (item 6 of the contract)."""
 
     def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
 
 
 @runtime_checkable
 class Imaged(Protocol):
-    """A section that knows the steps of many points, with their derivatives."""
+    """A section that computes the steps of many points at once, with their derivatives (item 6)."""
 
     def images(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
 
@@ -45,25 +45,25 @@ class Imaged(Protocol):
 
 @runtime_checkable
 class Watched(Protocol):
-    """A section whose steps take so long that a simulation is followed for so many returns at most."""
+    """A section whose steps are expensive, with a limit of the returns of a simulation (item 6)."""
 
     returns_watched: int
 
 
 @runtime_checkable
 class Walled(Protocol):
-    """A section that knows the walls at which motions rebound."""
+    """A section of motions that rebound from walls (item 7)."""
 
     def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
 
 
 def section_of(problem: Problem, p: float) -> Section:
-    """The section of a problem.
+    """Return the section of a problem at a parameter value.
 
     Raises
     ------
     ValueError
-        If its motions cannot be simulated.
+        If its motions cannot be simulated period by period.
     """
     if not isinstance(problem, Sectioned) or problem.spectrum != "map":
         raise ValueError(
@@ -73,14 +73,14 @@ def section_of(problem: Problem, p: float) -> Section:
 
 
 def slopes(section: Section, x: np.ndarray, size: float) -> np.ndarray:
-    """Derivative of ``step`` at a point, shape (d, d), by central differences.
+    """Return the derivative of ``step`` at a point, shape (d, d), by central differences.
 
     Parameters
     ----------
     section : Section
     x : ndarray, shape (d,)
     size : float
-        Length of the differences.
+        Step of the differences.
     """
     result = np.empty((len(x), len(x)))
     for j in range(len(x)):

@@ -1,1 +1,1 @@
-"""Loci: special points followed in a second parameter, points of codimension two, charts."""
+"""Loci: special points continued in a second parameter, points of codimension two on them, and charts of two parameters."""

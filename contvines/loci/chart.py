@@ -1,4 +1,4 @@
-"""Chart: loci, points of codimension two and regions in the plane of two parameters, as data."""
+"""Chart: loci, points of codimension two and regions in the plane of two parameters, as data that are shown, exported and saved."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class ChartOptions(PlotOptions, total=False):
-    """Of :func:`contvines.plots.chart.plot_chart`."""
+    """Options of :func:`contvines.plots.chart.plot_chart`."""
 
     labels: bool
     names: bool
@@ -40,22 +40,25 @@ class Chart(Resumable):
     parameters : (str, str)
         The parameter of the diagrams, on the x axis, and the second one, on the y axis.
     within : ((float, float), (float, float))
-        Their intervals.
+        Intervals of the two parameters.
     loci : dict of Locus
+        By label.
     points : dict of PlanePoint
+        Points of codimension two, by label.
     regions : list of Region
     crossings : list of dict
-        Where two loci cross that have nothing to do with one another: "on", "value", "error".
+        Crossings of two unrelated loci: "on", "value", "error"; see :func:`contvines.loci.charting_run.crossings`.
     model : dict
         Name and parameters of the model.
     settings : dict
     units : dict of str
-        Units of the parameters, by name, where they have any.
+        Units of the parameters, by name, if they have any.
     notation : dict of str
-        Labels of their axes, by name; none for equations of the user's own.
+        Axis labels of the parameters, by name; empty for user-defined equations.
     finished : bool
-        False while the run that makes it goes on, or was interrupted.
+        False while the computation runs, or after it was interrupted.
     message : str
+        State of the computation.
     """
 
     parameters: tuple[str, str]
@@ -99,7 +102,7 @@ class Chart(Resumable):
         )
 
     def of_kind(self, kind: str) -> list[PlanePoint]:
-        """The points of codimension two of a kind.
+        """Return the points of codimension two of one kind.
 
         Raises
         ------
@@ -113,7 +116,7 @@ class Chart(Resumable):
         return [point for point in self.points.values() if point.kind == kind]
 
     def to_dict(self) -> dict[str, Any]:
-        """The chart as a JSON-able dict."""
+        """Return the chart as a JSON-able dict."""
         result = {
             "parameters": list(self.parameters),
             "within": [list(interval) for interval in self.within],
@@ -128,19 +131,19 @@ class Chart(Resumable):
         return {**result, "units": self.units} if self.units else result
 
     def plot(self, **options: Unpack[ChartOptions]) -> Figure:
-        """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
+        """Draw the chart as a matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
         from ..plots.chart import plot_chart
 
         return plot_chart(self, **options)
 
     def to_pandas(self):
-        """All points of all loci as a data frame; see :func:`contvines.export.frames.chart_frame`."""
+        """Return all points of all loci as a data frame; see :func:`contvines.export.frames.chart_frame`."""
         from ..export.frames import chart_frame
 
         return chart_frame(self)
 
     def to_xarray(self):
-        """All points of all loci as a data set; see :func:`contvines.export.frames.chart_dataset`."""
+        """Return all points of all loci as a data set; see :func:`contvines.export.frames.chart_dataset`."""
         from ..export.frames import chart_dataset
 
         return chart_dataset(self)
@@ -152,17 +155,17 @@ class Chart(Resumable):
         ----------
         path : str or Path
         to : {"csv", "json"}, optional
-            By default what the ending of `path` says.
+            By default from the ending of `path`.
 
         Returns
         -------
         Path
-            The file that was written.
+            The written file.
 
         Raises
         ------
         ValueError
-            If there is no such format, or the place cannot be written.
+            If there is no such format, or the file cannot be written.
         """
         place = Path(path)
         from ..export.files import export_chart
@@ -170,14 +173,14 @@ class Chart(Resumable):
         return export_chart(self, to or place.suffix.lstrip(".").lower(), place)
 
     def save(self, path: str | Path) -> None:
-        """Write the chart to a .vines file, as graphs are; ``contvines.load`` reads both."""
+        """Write the chart to a .vines file, the format of graphs, too; ``contvines.load`` reads both."""
         from ..store import save
 
         save(self, path)
 
     # ------------------------------------------------------------------ to and from a file
     def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
-        """The chart as (kind, key, content)."""
+        """Generate the chart's entries of a file as (kind, key, content)."""
         yield "chart", "chart", fields_of(self, "loci", "points", "regions")
         for locus in self.loci.values():
             own = fields_of(locus, "branch", "marked", "kinds")
@@ -194,7 +197,17 @@ class Chart(Resumable):
 def chart_from_entries(
     entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True, trust: bool = False
 ) -> Chart:
-    """The chart that `Chart.entries` took apart."""
+    """Rebuild a chart from the entries that `Chart.entries` generated.
+
+    Parameters
+    ----------
+    entries : mapping
+        kind -> key -> content.
+    problems : bool
+        Rebuild the problems of the loci, too.
+    trust : bool
+        Import functions that the file names; see :func:`contvines.problems.registry.rebuild`.
+    """
     entries = renamed(entries)
     head = dict(next(iter(entries["chart"].values())))
     head["parameters"] = tuple(head["parameters"])
@@ -237,7 +250,7 @@ _MOTION = {"word": str | None, "kind": str | None, "periods": int | None}
 
 
 def _motions(found: object) -> bool:
-    """Whether these are motions as `problem.simulated_attractors` lists them."""
+    """Whether an object is a list of motions in the format of `problem.simulated_attractors`."""
     return isinstance(found, list) and all(
         fits(motion, dict[str, Any]) and all(fits(motion.get(name), kind) for name, kind in _MOTION.items())
         for motion in found
@@ -245,11 +258,12 @@ def _motions(found: object) -> bool:
 
 
 def check_chart(chart: Chart) -> None:
-    """Refuse a chart that cannot be shown; the sentence names the entry and the field.
+    """Check the types and shapes of a loaded chart.
 
     Raises
     ------
     ValueError
+        The message names the wrong entry and field.
     """
     check_fields("the chart", chart)
     for label, locus in chart.loci.items():

@@ -1,4 +1,4 @@
-"""Making a chart: loci from all special points of a graph, points of codimension two on them, loci that leave these."""
+"""Functions that make a chart: loci from all special points of a graph, points of codimension two on them, and loci that leave these."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ def chart(
     progress: Asked = None,
     interrupt: OnInterrupt = "raise",
 ) -> Chart:
-    """A chart of two parameters: a locus from every special point of a graph, and again from what is found on them.
+    """Make a chart of two parameters: a locus from every special point of a graph, and from the points of codimension two found on the loci.
 
-    The loci at which a real motion gains or loses its stability come first. Points of kinds of your own are left out; :func:`locus` follows them.
+    The loci at which a real motion gains or loses its stability come first. Special points of user-defined kinds are left out; use :func:`locus`
+    for them.
 
     Parameters
     ----------
@@ -44,23 +45,23 @@ def chart(
     over : str
         Name of the second parameter.
     within : (float, float)
-        Its interval.
+        Interval of the second parameter.
     bounds : (float, float), optional
-        Interval of the first parameter; that of the graph if left out.
+        Interval of the first parameter; by default that of the graph.
     depth : int
-        How many generations of points of codimension two start loci of their own.
+        Generations of points of codimension two from which further loci are traced.
     virtual : bool
-        Follow loci beyond borders, too, and start them at virtual special points.
+        Continue loci beyond borders, and start them at virtual special points, too.
     regions : bool
         Divide the plane into regions, and simulate in each.
     settings : Settings or mapping, optional
     journal : Journal, optional
-        What it remembers is not computed again.
+        Results that it contains are not computed again.
     progress : callable or bool, optional
         Called with a ``ChartProgress`` (``message`` and counts). By default a line on a terminal or in a notebook; False for none.
     interrupt : "raise" or "return"
-        What Ctrl-C does: raise :class:`contvines.Interrupted`, whose ``graph`` is the chart of all that is done, or return
-        that chart. ``contvines.resume(chart)`` goes on.
+        On Ctrl-C: raise :class:`contvines.Interrupted`, whose ``graph`` is the unfinished chart, or return the unfinished chart.
+        ``contvines.resume(chart)`` continues it.
 
     Returns
     -------
@@ -69,7 +70,7 @@ def chart(
     Raises
     ------
     ValueError
-        If a parameter or interval will not do, or no special point of the graph has a locus; the sentence says why.
+        If a parameter or interval is unsuitable, or no special point of the graph has a locus.
     Interrupted
         On Ctrl-C.
     """
@@ -100,7 +101,7 @@ def chart(
 
 
 def _ends_stability(graph: Graph, point: SpecialPoint) -> bool:
-    """Whether a real motion gains or loses its stability there; the loci of these points come first."""
+    """Whether a real motion gains or loses its stability at a special point."""
     branch = graph.branches.get(point.branch)
     if branch is None or not branch.real:
         return False
@@ -118,13 +119,13 @@ def chart_of_one(
     progress: Callable[[ChartProgress], None] | None = None,
     kinds: Iterable[Kind] | None = None,
 ) -> Chart:
-    """The locus of one special point of a graph with the points of codimension two on it, as a chart.
+    """Make a chart of the locus of one special point of a graph, with the points of codimension two on it.
 
     Parameters
     ----------
     graph : Graph
     label : str
-        Of the special point.
+        Label of the special point.
     over, within, virtual, progress
         As for :func:`chart`.
     kinds

@@ -1,4 +1,4 @@
-"""The state of a chart while it is made: a queue of places where loci may start, and what is known already; last where loci cross."""
+"""Charting: the state of a chart while it is computed, with a queue of starts of loci; and the crossings of loci."""
 
 from __future__ import annotations
 
@@ -34,27 +34,28 @@ from .starts import Candidate, candidate_of, check_start, with_period
 from .tracing import trace_locus
 
 T = TypeVar("T")
-BESIDE = 0.1  # of the sides of the plane: a segment so far away may belong to an arc through a place
-LARGEST = 120  # loci; a chart that was cut there says so
+# largest distance, in sides of the plane, of a point from the chord of an arc that may contain it
+BESIDE = 0.1
+LARGEST = 120  # most loci of a chart; its message reports when it is reached
 
 
 class ChartProgress(NamedTuple):
-    """Where a chart is: a sentence, and how much there is so far.
+    """Progress of a chart: a message and counts.
 
     Attributes
     ----------
     message : str
     loci : int
-        Finished.
+        Finished loci.
     points : int
-        Of codimension two, found on them.
+        Points of codimension two found on them.
     waiting : int
-        Starts of further loci that are known so far; some may lie on one locus.
+        Starts in the queue; several may lie on one locus.
     done, known : int
-        Starts of loci done, and known so far.
+        Starts that are done; all starts known so far.
     seconds : float
-        Estimate of the time that the waiting starts will take, from the time of those done; behind the loci that of the regions, then of the
-        crossings. NaN before the first one is done.
+        Estimated time for the waiting starts, from the time of those done; later that of the regions, then of the crossings. NaN before the
+        first one is done.
     """
 
     message: str
@@ -67,7 +68,7 @@ class ChartProgress(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """For a progress line."""
+        """Text of a progress line."""
         return (
             f"{self.message}  |  {self.done} of {self.known} starts of loci known so far{time_left(self.seconds)}; "
             f"{self.loci} {'locus' if self.loci == 1 else 'loci'}, {self.points} points"
@@ -75,7 +76,7 @@ class ChartProgress(NamedTuple):
 
 
 class Charting:
-    """The state of a chart while it is made."""
+    """The state of a chart while it is computed; for the arguments see :func:`contvines.loci.charting.chart`."""
 
     def __init__(
         self,
@@ -101,7 +102,7 @@ class Charting:
             notation={name: text for name, text in graph.notation.items() if name in (graph.parameter, over)},
         )
         self.queue: deque[tuple[Candidate, int]] = deque()
-        self.numbers = Counter[str]()  # the last one with each prefix
+        self.numbers = Counter[str]()  # last number used with each prefix of labels
         for taken in graph.special:
             prefix = taken.rstrip("0123456789")
             self.numbers[prefix] = max(self.numbers[prefix], int(taken[len(prefix) :] or 0))
@@ -110,7 +111,7 @@ class Charting:
         self.done, self.tracing, self.begun = 0, False, monotonic()
 
     def tell(self, message: str, seconds: float | None = None) -> None:
-        """Report progress; the time left, if nothing else is known, from that of the starts done."""
+        """Report progress; by default the remaining time is estimated from the starts done."""
         if self.progress is not None:
             waiting, loci, points = len(self.queue), len(self.chart.loci), len(self.chart.points)
             if seconds is None:
@@ -119,7 +120,7 @@ class Charting:
             self.progress(ChartProgress(message, loci, points, waiting, self.done, known, seconds))
 
     def counted(self, what: str, pieces: Sequence[T]) -> Iterator[T]:
-        """Pieces of work that follow the loci, one by one, each told with the time that it and the later ones will take."""
+        """Generate pieces of work (regions, crossings), and report each with the estimated remaining time."""
         begun = monotonic()
         for i, piece in enumerate(pieces):
             left = (monotonic() - begun) * (len(pieces) - i) / i if i else float("nan")
@@ -127,7 +128,7 @@ class Charting:
             yield piece
 
     def label(self, prefix: str) -> str:
-        """The next label with this prefix."""
+        """Return the next label with a prefix."""
         self.numbers[prefix] += 1
         return f"{prefix}{self.numbers[prefix]}"
 
@@ -143,7 +144,7 @@ class Charting:
             self.refused.append(f"{point.label}: {type(error).__name__}: {error}")
 
     def work(self, depth: int) -> None:
-        """Trace what is queued, and what is found, until nothing is new."""
+        """Trace the loci of all queued starts, and queue the starts of loci that leave new points, up to `depth` generations."""
         while self.queue:
             if len(self.chart.loci) >= LARGEST:
                 self.chart.message = f"stopped at {LARGEST} loci with {len(self.queue)} waiting"
@@ -160,12 +161,12 @@ class Charting:
             self.chart.message = "finished"
 
     def follow(self, candidate: Candidate) -> list[tuple[PlanePoint, Locus]]:
-        """Trace the locus of a candidate unless it is known; returns the new points on it, each with the locus."""
-        known = self.known(candidate)
-        if known is not None:
+        """Trace the locus of a candidate unless it lies on a known one; return the new points on it, each with the locus."""
+        traced = self.known(candidate)
+        if traced is not None:
             point = self.chart.points.get(candidate.seed)
-            if point is not None and known.label not in point.on:
-                point.on.append(known.label)
+            if point is not None and traced.label not in point.on:
+                point.on.append(traced.label)
             return []
         locus = self.trace(candidate)
         if locus is None:
@@ -179,8 +180,8 @@ class Charting:
         return [(point, locus) for point in fresh]
 
     def trace(self, candidate: Candidate) -> Locus | None:
-        """The locus of a candidate; None, with a remark, where it cannot be followed."""
-        # a locus is called like the special point from which it comes
+        """Return the locus of a candidate; None if it cannot be traced, with the reason added to ``refused``."""
+        # a locus has the label of the special point at which it starts
         own = candidate.seed in self.graph.special
         prefix = kind_named(candidate.kind).label
         label = candidate.seed if own else self.label(prefix)
@@ -196,20 +197,20 @@ class Charting:
         return locus
 
     def tell_points(self, label: str, count: int, value: float) -> None:
-        """Report how many points a locus has so far."""
+        """Report the number of points that a locus has so far."""
         self.tell(f"{label}: {count} points")
 
     def known(self, candidate: Candidate) -> Locus | None:
-        """The locus on which a candidate lies already, or None."""
+        """Return the traced locus on which a candidate lies, or None."""
         wanted = condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
             problem, there = locus.problem, candidate
             if problem is None:
                 continue
-            # where branches cross they do not fold
+            # a fold may also lie on a locus of branch points, where branches cross instead of folding
             if locus.kind != candidate.kind and (wanted, problem.condition) != (FOLD, BRANCH):
                 continue
-            if wanted == PERIOD:  # cycles of another period stand for the same homoclinic orbits
+            if wanted == PERIOD:  # cycles of another long period represent the same homoclinic orbits
                 try:
                     there = with_period(candidate, problem.reference)
                 except ValueError:
@@ -219,7 +220,7 @@ class Charting:
         return None
 
     def passes(self, locus: Locus, problem: LocusProblem, candidate: Candidate, border: bool) -> bool:
-        """Whether a locus goes through the place of a candidate, with the same motion (at borders: with any word)."""
+        """Whether a locus passes through the (p, q) of a candidate with the same motion (at borders: with any word)."""
         values, size, unit = locus.values, locus.size, self.widths
         place = np.array([candidate.p, candidate.q])
         near = np.abs((values - place) / unit).max(axis=1)
@@ -227,7 +228,7 @@ class Charting:
             return False
         repeats = size > len(candidate.u) and size % len(candidate.u) == 0
         if repeats and min(near[0], near[-1]) < PLACES.end:
-            return False  # a doubled motion ends where it is the motion itself, which goes on
+            return False  # the locus of a doubled motion ends where it becomes the motion itself, whose locus continues
         form = candidate.problem.canonical(candidate.u, candidate.p)
         engine = self.forms.setdefault(locus.label, Engine(problem, self.within, self.settings))
         steps, way = np.diff(values, axis=0) / unit, (place - values[:-1]) / unit
@@ -237,7 +238,7 @@ class Charting:
             share = float(np.clip(shares[i], 0.0, 1.0))
             guess = (1.0 - share) * locus.branch.points[i] + share * locus.branch.points[i + 1]
             q = float((1.0 - share) * values[i, 1] + share * values[i + 1, 1])
-            # the point of the locus on the line through the place across the segment, whichever way the segment goes
+            # solve for the point of the locus on the line through the place, perpendicular to the segment
             across = np.zeros(len(guess) + 1)
             across[size], across[-1] = steps[i] / unit * (problem.unit, 1.0)
             found = engine.solve(guess, q, across, float(steps[i] / unit @ place)) if across.any() else None
@@ -251,19 +252,19 @@ class Charting:
 
     # ------------------------------------------------------------------ points
     def mark(self, locus: Locus) -> list[PlanePoint]:
-        """Find the points of codimension two on a locus; returns those that are new."""
-        known = len(self.chart.points)
+        """Find the points of codimension two on a locus; return the new ones."""
+        count = len(self.chart.points)
         locus.marked = mark(locus, self.chart.points, self.label, self.same)
-        return list(self.chart.points.values())[known:]
+        return list(self.chart.points.values())[count:]
 
     def same(self, one: PlanePoint, other: PlanePoint) -> bool:
-        """Whether two points are one: the same kind at the same place."""
+        """Whether two points are equal: the same kind at the same place."""
         apart = np.abs(np.subtract(one.value, other.value))
         return one.kind == other.kind and bool((apart <= PLACES.same * self.widths).all())
 
     # ------------------------------------------------------------------ regions and crossings
     def divide(self) -> None:
-        """Regions between the real parts of the loci, and what a simulation finds in each."""
+        """Compute the regions between the real parts of the loci, and simulate in each."""
         graph, loci = self.graph, self.chart.loci.values()
         curves = [np.where(locus.real[:, None], locus.values, np.nan) for locus in loci]
         problem = next(iter(graph.branches.values())).attached
@@ -278,18 +279,24 @@ class Charting:
     def attractors_at(
         self, problem: Problem, place: tuple[float, float], motions: KnownMotions
     ) -> list[dict[str, Any]]:
-        """What is stable at a place, by simulation and by continuation; empty where the problem cannot be simulated."""
+        """Return the stable motions at (p, q), by simulation and by continuation; empty if the problem cannot be simulated."""
         key = f"region/{place[0]!r}/{place[1]!r}"
-        known = self.journal.recall(key)
-        if known is None:
+        entry = self.journal.recall(key)
+        if entry is None:
             there = problem.against(problem.parameter, {self.over: place[1]})
             size = 0.0 if problem.scales is None else float(problem.scales.unknowns.max())
-            known = {"attractors": together(there.simulated_attractors(place[0]), motions.at(place), size)}
-            self.journal.record(key, known)
-        return list(known["attractors"])
+            entry = {"attractors": together(there.simulated_attractors(place[0]), motions.at(place), size)}
+            self.journal.record(key, entry)
+        return list(entry["attractors"])
 
     def finish(self) -> None:
-        """Find where loci cross, close the chart and keep it."""
+        """Compute the crossings of loci, mark the chart as finished and record it.
+
+        Raises
+        ------
+        ValueError
+            If no locus could be traced.
+        """
         self.chart.crossings = crossings(self.chart, partial(self.counted, "crossing"))
         self.chart.finished = True
         if self.refused and not self.chart.loci:
@@ -299,17 +306,18 @@ class Charting:
 
 
 # ------------------------------------------------------------------ crossings
-Met = tuple[str, str, int, int, np.ndarray]  # two loci, a segment of each, and where these meet
+# labels of two loci, a segment of each, and the crossing of these segments
+Met = tuple[str, str, int, int, np.ndarray]
 
 
 def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]]) -> list[dict[str, Any]]:
-    """Where real parts of two loci cross without anything to do with one another: two motions, or two directions of one.
+    """Find crossings of the real parts of two loci that are no common point of codimension two: they belong to different motions, or to independent directions of one motion.
 
     Parameters
     ----------
     chart : Chart
     each : callable
-        Hands out what may be a crossing one by one, and may tell of it.
+        Iterates over possible crossings; it may report progress.
 
     Returns
     -------
@@ -339,7 +347,7 @@ def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]]) -> list[
 
 
 def segments(a: np.ndarray, b: np.ndarray) -> list[tuple[int, int, np.ndarray]]:
-    """Crossings of two polygons, shapes (n, 2) and (m, 2): (segment of a, segment of b, place)."""
+    """Return the crossings of two polygonal curves, shapes (n, 2) and (m, 2): (segment of a, segment of b, place)."""
     if len(a) < 2 or len(b) < 2:
         return []
     d, e = np.diff(a, axis=0), np.diff(b, axis=0)
@@ -353,7 +361,7 @@ def segments(a: np.ndarray, b: np.ndarray) -> list[tuple[int, int, np.ndarray]]:
 
 
 def _crossing(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) -> tuple[float, float, float]:
-    """(p, q, error): the place by the secant method on the second parameter, where both loci can be solved at a value of it."""
+    """(p, q, error) of a crossing: by the secant method in q if both loci can be solved at given q, else the crossing of the segments."""
     p, q = float(place[0]), float(place[1])
     low, high = first.within
     both = [(first, i), (second, j)]
@@ -368,16 +376,16 @@ def _crossing(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) ->
         ends = [float(point.u[locus.size]) for point, (locus, _) in zip(solved, both) if point is not None]
         return None if len(ends) < 2 else (ends[0] - ends[1], ends[0])
 
-    before, now = q, q + Settings.aside * size + Settings.located * (high - low)
+    before, value = q, q + Settings.aside * size + Settings.located * (high - low)
     last = gap(before)
     for _ in range(20):
-        here = gap(now)
+        here = gap(value)
         if last is None or here is None or here[0] == last[0]:
             break
-        step = -here[0] * (now - before) / (here[0] - last[0])
-        if not abs(now + step - q) <= 2.0 * size:
+        step = -here[0] * (value - before) / (here[0] - last[0])
+        if not abs(value + step - q) <= 2.0 * size:
             break
-        before, last, now = now, here, now + step
+        before, last, value = value, here, value + step
         if abs(step) < Settings.rounding * (high - low):
-            return here[1], float(now), float(abs(step) / (high - low))
+            return here[1], float(value), float(abs(step) / (high - low))
     return met

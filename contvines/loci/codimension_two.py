@@ -1,6 +1,7 @@
-"""Points of codimension two on a locus: zeros of tests along it, located as special points on branches are.
+"""Points of codimension two on a locus: zeros of test functions along it, located like special points on branches.
 
-All that is looked for is asked in one loop; see :mod:`contvines.loci.sought`.
+One loop evaluates all test functions; they are listed in :mod:`contvines.loci.sought`. Also: the points at which a locus begins or ends because its
+motion becomes an equilibrium, a shorter motion or a symmetric one.
 """
 
 from __future__ import annotations
@@ -36,11 +37,12 @@ from .settings import PLACES, VANISHING
 from .sought import TOUCHING, References, Sought, Test, borders, sought, vanishing_margins
 from .starts import Candidate, begin, first_point
 
-FEW = 4  # places at which a border is asked whether its equations are singular
-SHRINKS = 2.0  # ratio of squares of sizes over which cycles are seen to shrink
-BESIDE = 0.02  # distance (in the metric) on either side at which its point of codimension two is sought
+FEW = 4  # points of a border's locus at which its equations are tested for being singular
+# ratio of the squared sizes of two cycles from which the point at which they vanish is extrapolated
+SHRINKS = 2.0
+BESIDE = 0.02  # distance (in the metric) on either side of a locus's end between which the parent motion's point is searched
 FREQUENCY_KNOWN = ("bogdanov-takens", "resonance-1-1", "resonance-1-2", "resonance-1-3", "resonance-1-4")
-"""Kinds that say themselves where the critical pair is; at a double zero rounding may make one of it."""
+"""Kinds that determine the critical pair's position, so that no angle or frequency is given; rounding may split a double zero into a pair."""
 
 Interval = tuple[float, float]
 Found = tuple[int, PlanePoint]
@@ -49,7 +51,7 @@ Found = tuple[int, PlanePoint]
 # ------------------------------------------------------------------ the points of a locus
 @listening()
 def mark_locus(locus: Locus) -> tuple[Found, ...]:
-    """Find the points of codimension two on a locus that belongs to no chart.
+    """Find the points of codimension two on a locus that is not part of a chart.
 
     Parameters
     ----------
@@ -58,7 +60,7 @@ def mark_locus(locus: Locus) -> tuple[Found, ...]:
     Returns
     -------
     tuple of (int, PlanePoint)
-        Each point with the index of the locus's point before it. The labels are numbered along the locus, kind by kind.
+        Each point with the index of the locus's point before it. Labels are numbered along the locus, separately for each kind.
     """
     numbers = Counter[str]()
 
@@ -75,17 +77,22 @@ def mark(
     label: Callable[[str], str],
     same: Callable[[PlanePoint, PlanePoint], bool],
 ) -> tuple[Found, ...]:
-    """The points of codimension two on a locus; those that are new are added to the known ones, with labels and coefficients.
+    """Find the points of codimension two on a locus, and add the new ones, with labels and coefficients, to the known points.
 
     Parameters
     ----------
     locus : Locus
     known : dict of PlanePoint
-        By label; extended in place.
+        Known points by label; extended in place.
     label : callable
-        prefix -> the next label with it.
+        prefix -> next label with this prefix.
     same : callable
-        Whether two points are one.
+        (PlanePoint, PlanePoint) -> whether they are equal.
+
+    Returns
+    -------
+    tuple of (int, PlanePoint)
+        All points on the locus, each with the index of the locus's point before it.
     """
     own, marked = {kind.name: kind for kind in locus.kinds}, dict[str, Found]()
     for index, point in find(locus):
@@ -101,19 +108,19 @@ def mark(
 
 
 def find(locus: Locus) -> list[Found]:
-    """The points of codimension two on a locus, each with the index of the point before it; labels are left empty."""
+    """Find the points of codimension two on a locus, each with the index of the locus's point before it; labels are empty."""
     problem, branch = locus.problem, locus.branch
     if problem is None:
         return []
     points = bare_points(branch.points, branch.values, branch.tangents)
     if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(problem, points)):
-        return []  # nothing can be told from equations that are singular all along
+        return []  # the tests are meaningless where the equations are singular all along the locus
     ends = (0, points[0]), (len(points) - 1, points[-1])
     both = [(index, beginning(problem, end, locus.within)) for index, end in ends]
     born = [(index, point) for index, point in both if point is not None]
     found: list[Found] = []
     for index, point in _zeros(problem, points, locus.within, list(sought(problem, locus.kinds))):
-        # where cycles begin other multipliers may be critical, too, and tests are all but zero
+        # where the motions are born, further multipliers may be critical, and tests nearly vanish without being points
         begins = any(_at_one_place(point, other, PLACES.end) for _, other in born)
         if not begins and not any(same_point(point, other) for _, other in found):
             found.append((index, point))
@@ -121,7 +128,7 @@ def find(locus: Locus) -> list[Found]:
 
 
 def bare_points(points: np.ndarray, values: np.ndarray, tangents: np.ndarray) -> list[Solved]:
-    """Points of which no more is known."""
+    """Wrap arrays of points as `Solved`, without rows."""
     rest = np.zeros(0), 0.0, 0.0, 0.0
     return [Solved(u, float(q), tangent, *rest) for u, q, tangent in zip(points, values, tangents)]
 
@@ -140,7 +147,7 @@ def _place(problem: LocusProblem, point: Solved) -> Place:
 
 
 def same_point(one: PlanePoint, other: PlanePoint) -> bool:
-    """Whether two points of one locus are one: of the same kind and at the same place."""
+    """Whether two points of one locus are equal: the same kind at the same place."""
     return one.kind == other.kind and _at_one_place(one, other)
 
 
@@ -152,19 +159,19 @@ def _at_one_place(one: PlanePoint, other: PlanePoint, near: float = PLACES.same)
 def _zeros(
     problem: LocusProblem, points: Sequence[Solved], within: Interval, wanted: Sequence[Sought]
 ) -> Iterator[Found]:
-    """The zeros of tests between points of a locus that are what is looked for, each with the index of the point before it."""
+    """Generate the verified zeros of the tests between points of a locus, each with the index of the point before it."""
     plane, last = Plane(problem), len(points) - 2
     places = [_place(problem, point) for point in points]
     beside: list[References | None] = []
     for place in places:
         before = beside[-1] if beside else None
         beside.append(References(plane, before) if plane.to(place) else before)
-    known = {each.kind: _by_few_digits(each, plane, places, beside) for each in wanted if each.rough}
+    rough = {each.kind: _by_few_digits(each, plane, places, beside) for each in wanted if each.rough}
     for i, (ends, at) in enumerate(zip(pairwise(places), beside)):
         if at is None or not plane.to(ends[0]):
             continue
         values = [
-            [known[each.kind][i + k] if each.rough else _value(plane, end, each.test, at) for each in wanted]
+            [rough[each.kind][i + k] if each.rough else _value(plane, end, each.test, at) for each in wanted]
             for k, end in enumerate(ends)
         ]
         segment: Segment | None = None
@@ -186,7 +193,7 @@ def _zeros(
 def _by_few_digits(
     wanted: Sought, plane: Plane, places: Sequence[Place], beside: Sequence[References | None]
 ) -> list[float]:
-    """A costly test at all places, to a few digits; exactly at both ends of each change of sign, which may then lie between the next two places."""
+    """Values of an expensive test at all places: to a few digits, but exact at both ends of every change of sign (repeated, since the exact values may move it)."""
 
     def value(test: Test | None, j: int) -> float:
         at = beside[j]
@@ -206,7 +213,7 @@ def _by_few_digits(
 
 
 def _value(plane: Plane, place: Place, test: Test, at: References) -> float:
-    """A test at a place; NaN where it cannot be computed."""
+    """Evaluate a test at a place; NaN if it cannot be computed."""
     plane.to(place)
     try:
         return test(plane, at)
@@ -215,7 +222,7 @@ def _value(plane: Plane, place: Place, test: Test, at: References) -> float:
 
 
 def _segment(problem: LocusProblem, ends: Sequence[Solved], within: Interval, at: References) -> Segment:
-    """A segment of a locus, its equations with the borders and the pair that belong to its beginning."""
+    """A segment of a locus; its equations have the borders and the reference pair of its first point."""
     engine = Engine(problem.bordered_at(*_place(problem, ends[0]), at.reference), within, Settings())
     row = np.zeros(engine.row_size)
     first, last = (end._replace(tangent=engine.unit(end.tangent), row=row) for end in ends)
@@ -225,9 +232,9 @@ def _segment(problem: LocusProblem, ends: Sequence[Solved], within: Interval, at
 def _root(
     plane: Plane, segment: Segment, test: Test, at: References, size: float
 ) -> tuple[Place, float] | None:
-    """Where a test vanishes on a segment, with the error; None where it jumps, or has a pole.
+    """Locate the zero of a test on a segment, with its error; None if the test jumps or has a pole.
 
-    The coefficient of a normal form has one where one more multiplier is critical.
+    The coefficient of a normal form has a pole where a further multiplier is critical.
     """
 
     def value(point: Solved) -> float:
@@ -242,7 +249,7 @@ def _root(
 
 
 def _point(wanted: Sought, plane: Plane, place: Place, error: float, within: Interval) -> PlanePoint | None:
-    """The point at a zero; None where it is not of its kind, or an end of the interval."""
+    """The point of codimension two at a zero; None if it fails the verification, or lies at an end of the interval."""
     plane.to(place)
     low, high = within
     at_end = min(abs(place.q - low), abs(place.q - high)) <= VANISHING.margin * (high - low)
@@ -269,10 +276,10 @@ def _point(wanted: Sought, plane: Plane, place: Place, error: float, within: Int
 
 # ------------------------------------------------------------------ coefficients of normal forms
 def coefficients(point: PlanePoint) -> dict[str, float]:
-    """Normal-form coefficients at a point, by name; none where the derivatives cannot be obtained.
+    """Return normal form coefficients at a point, by name; empty if the derivatives cannot be computed.
 
-    The normal forms are those of :mod:`contvines.bifurcation.normal_forms.critical`; beside their coefficients "angle" is that of a pair (of the
-    problem's own period), "omega" its frequency, where the kind itself leaves them open.
+    The normal forms are those of :mod:`contvines.bifurcation.normal_forms.critical`. In addition, "angle" is the angle of the critical pair (over the
+    problem's own period) and "omega" its frequency, unless the kind determines them.
     """
     problem, kind = point.attached, point.kind
     if problem.kernels.matrix is None or point.margins:
@@ -289,7 +296,7 @@ def coefficients(point: PlanePoint) -> dict[str, float]:
 
 
 def critical_pairs(forms: Forms) -> list[complex]:
-    """The raw multipliers (eigenvalues) on the boundary with positive imaginary part, the most critical one first."""
+    """Return the raw multipliers (eigenvalues) on the stability boundary with positive imaginary part, the most critical one first."""
     if forms.flow:
         spectrum = forms.eigenvalues
     elif isinstance(forms, ReturnForms):
@@ -305,8 +312,8 @@ def critical_pairs(forms: Forms) -> list[complex]:
     ]
 
 
-# ------------------------------------------------------------------ where a motion becomes a shorter or more symmetric one
-#: what is followed -> kinds of the points at which it begins beside equilibria, and beside cycles of half the period
+# ------------------------------------------------------------------ ends at shorter or more symmetric motions
+#: condition of a locus -> kinds of the points at which the locus begins, if its cycles are born at equilibria (first table) or at cycles of half the period
 FIRST_OF_EQUILIBRIA = {
     FOLD: ("generalized-hopf",),
     PAIR: ("zero-hopf", "double-hopf"),
@@ -319,7 +326,7 @@ FIRST_OF_CYCLES = {
 
 
 class Becomes(NamedTuple):
-    """The motion that a motion all but is: the kind of special point at which it leaves that, its problem and unknowns, where there are some."""
+    """A more symmetric motion that a motion nearly equals: kind of the special point at which they separate, and its problem and unknowns, if there are any."""
 
     kind: str
     problem: Problem | None = None
@@ -327,7 +334,7 @@ class Becomes(NamedTuple):
 
 
 def becomes(locus: LocusProblem, place: Place) -> Becomes | None:
-    """What the motion at a place of a locus all but is, if it is more symmetric than others of its equations."""
+    """Return the more symmetric motion that the motion at a place of a locus nearly equals; None if there is none."""
     u, p, q = place
     whole = locus.at(q)
     if isinstance(whole, CycleProblem):
@@ -345,17 +352,22 @@ def becomes(locus: LocusProblem, place: Place) -> Becomes | None:
 def beginning(
     locus: LocusProblem, end: Solved, within: Interval, met: Becomes | None = None, ahead: float = 0.0
 ) -> PlanePoint | None:
-    """The point of codimension two at which a locus begins, or ends, whose motion there is an equilibrium, a shorter or a symmetric one.
+    """Find the point of codimension two at which a locus begins or ends because its motion becomes an equilibrium, a shorter or a symmetric motion.
 
-    It is the point of that motion: the equations of the locus are singular there, and no point of it comes nearer than to half the digits.
+    The equations of the locus are singular there, and its points approach it only to half of the digits. Therefore the point is computed on the locus
+    of the other motion.
 
     Parameters
     ----------
-    locus, end, within
+    locus : LocusProblem
+    end : Solved
+        First or last point of the locus.
+    within : (float, float)
+        Interval of the second parameter.
     met : Becomes, optional
-        That motion, where it is known.
+        The other motion, if it is known.
     ahead : float
-        How far the parameters may still be from those of the point.
+        Estimated distance of the parameters from those of the point.
     """
     place = _place(locus, end)
     met, (_, p, q) = met or becomes(locus, place), place
@@ -379,10 +391,10 @@ def beginning(
 
 
 def vanishing(locus: LocusProblem, ends: Sequence[Solved], within: Interval) -> PlanePoint | None:
-    """The point of codimension two at which the cycles of a locus shrink to an equilibrium, from the last of its points.
+    """Find the point of codimension two at which the cycles of a locus shrink to an equilibrium, from its last points.
 
-    Their equations are singular there to a higher order in their size: Newton's method fails before. The square of the size falls to zero in
-    proportion to the parameters, and the point is where that leads to.
+    The equations become singular with a high order of the cycles' size, so that Newton's method fails before. Since the squared size is
+    proportional to the distance of the parameters from the point, the point is extrapolated.
     """
     problem = on_mesh(locus.base)
     last = _place(locus, ends[-1])
@@ -398,4 +410,4 @@ def vanishing(locus: LocusProblem, ends: Sequence[Solved], within: Interval) -> 
         return None
     found = beginning(locus, ends[-1], within, Becomes("hopf", *rest), float(np.abs(behind).max()))
     missed = np.inf if found is None else np.abs(np.subtract(found.value, last[1:]) - ahead).max()
-    return found if missed <= np.abs(behind).max() else None  # the smallest cycles are known to few digits
+    return found if missed <= np.abs(behind).max() else None  # the smallest cycles have few accurate digits

@@ -1,7 +1,7 @@
-"""The loci that leave a point of codimension two: those that pass it, and those of motions that are born there.
+"""Starts of the loci that leave a point of codimension two: loci that pass through it, and loci of motions that are born there.
 
-Born are cycles of twice the period, cycles beside an equilibrium, and homoclinic orbits beside a Bogdanov-Takens point. These follow from their
-asymptotics. On the centre manifold x = x0 + H(w, b), with parameters x0 + K(b) of its own, the flow is
+The motions that are born are cycles of twice the period, cycles around an equilibrium, and homoclinic orbits near a Bogdanov-Takens point. The first
+homoclinic orbit is computed from its asymptotics. On the centre manifold x = x0 + H(w, b), with the unfolding parameters b and p = p0 + K(b), the flow is
 
     w1' = w2,    w2' = b1 + b2 w2 + a w1^2 + b w1 w2 + ...
 
@@ -36,7 +36,7 @@ from .starts import Candidate, begin, of_period
 
 Interval = tuple[float, float]
 
-#: kind of a point -> kinds of the loci of the same problem that pass it
+#: kind of a point -> kinds of the loci of the same problem that pass through it
 PASSING = {
     "bogdanov-takens": ("fold", "hopf"),
     "zero-hopf": ("fold", "hopf"),
@@ -55,27 +55,40 @@ PASSING = {
     "border-symmetry-breaking": ("symmetry-breaking",),
     "border-neimark-sacker": ("neimark-sacker",),
 }
-#: kind of a point -> kind of the locus of cycles of twice the period that begins there, of maps, and of cycles of flows beside these
+#: kind of a point -> kind of the locus of cycles of twice the period that begins there; the second table holds for cycles of flows only
 DOUBLED = {"generalized-period-doubling": "fold"}
 DOUBLED_CYCLES = {"resonance-1-2": "neimark-sacker", "fold-flip": "neimark-sacker"}
-#: likewise of the cycles beside an equilibrium
+#: kind of a point -> kind of the locus of cycles around an equilibrium that begins there
 SMALL = {"generalized-hopf": "fold", "zero-hopf": "neimark-sacker", "double-hopf": "neimark-sacker"}
-ASIDE = 0.01  # of the interval of the first parameter: how far from a crossing a locus is started
-AMPLITUDES = (0.05, 0.02, 0.1, 0.005)  # of the motion at which its special point is looked for
-AMPLITUDES_OF_CYCLES = (0.1, 0.2, 0.05, 0.4)  # of flows: where they are smaller the tests are all but zero
+ASIDE = 0.01  # distance from a crossing of branches at which a locus is started, as part of the first parameter's interval
+# amplitudes of the new motion at which its special point is tried, relative to the motion's size
+AMPLITUDES = (0.05, 0.02, 0.1, 0.005)
+# the same for cycles of flows: at smaller amplitudes the tests nearly vanish
+AMPLITUDES_OF_CYCLES = (0.1, 0.2, 0.05, 0.4)
 
 
 def leaving(point: PlanePoint, locus: Locus, bounds: Interval, over: str) -> Iterator[Candidate]:
-    """Starts of the loci that pass a point, or begin there."""
+    """Generate starts of the loci that pass through a point, or begin there.
+
+    Parameters
+    ----------
+    point : PlanePoint
+    locus : Locus
+        A locus on which the point was found.
+    bounds : (float, float)
+        Interval of the first parameter.
+    over : str
+        Name of the second parameter.
+    """
     problem, u, (p, q) = point.attached, point.u, point.value
-    # two branches cross there, and none of them folds
+    # on a locus of branch points two branches cross, and neither of them folds
     crossing = locus.problem is not None and locus.problem.condition == BRANCH
     for kind in PASSING.get(point.kind, ()):
         if kind == "neimark-sacker" and problem.spectrum != "map":
             continue
         if not crossing:
             yield Candidate(problem, kind, u, p, q, point.label)
-        elif kind != "fold":  # started beside the crossing, where the equations are regular
+        elif kind != "fold":  # start next to the crossing, where the equations are regular
             for aside in (-ASIDE, ASIDE):
                 yield Candidate(problem, kind, u, p + aside * (bounds[1] - bounds[0]), q, point.label)
     if point.kind in CODIMENSION_TWO and CODIMENSION_TWO[point.kind].border:
@@ -93,7 +106,7 @@ def leaving(point: PlanePoint, locus: Locus, bounds: Interval, over: str) -> Ite
 
 # ------------------------------------------------------------------ motions of a small amplitude
 def _doubled(point: PlanePoint) -> Iterator[Embedding]:
-    """The motion in the problem of those of twice the period, with the direction in which these leave it."""
+    """The motion as one of twice the period, with the direction in which motions of twice the period leave it."""
     problem, (p, _) = point.attached, point.value
     right = Linearisation(problem).at(point.u, p).null_vectors(flipped=True).right
     for child in problem.offspring(problem.flip_kind, point.u, p, np.append(right, 0.0), -1.0 + 0.0j)[:1]:
@@ -112,12 +125,12 @@ def _born(
     over: str,
     within: Interval,
 ) -> Iterator[Candidate]:
-    """Special points of this kind of motions that are born at a point, at a given small amplitude."""
+    """Generate special points of a kind on the motions that are born at a point, with a given small amplitude."""
     p, q = point.value
     for child in children:
         problem, start, way = child.problem, np.asarray(child.u, dtype=float), child.tangent[:-1]
         units = Linearisation(problem).units
-        cycles = isinstance(problem, Adaptive)  # of a flow: many unknowns, of which the largest counts
+        cycles = isinstance(problem, Adaptive)  # cycles of a flow have many unknowns: use the maximum norm
         way = way / np.linalg.norm(way / units, np.inf if cycles else 2)
         n = len(way)
         for amplitude in AMPLITUDES_OF_CYCLES if cycles else AMPLITUDES:
@@ -136,27 +149,28 @@ def _born(
 
 
 # ------------------------------------------------------------------ homoclinic orbits
-SIDE = 10.0  # half of the period in the time s: the orbit comes to the saddle as near as 4 exp(-2 SIDE) of its size
-INTERVALS = 40  # of its first mesh
-STEP = 0.01  # of differences, in units of the states and of the parameters
-SHARES = (0.1, 0.03, 0.01, 0.003)  # of these units: sizes of the first orbit, and changes of the parameters
-ALIKE = 0.5  # part of the predicted size that an orbit has at least
+SIDE = 10.0  # half of the period in the scaled time s: the orbit approaches the saddle to 4 exp(-2 SIDE) of its size
+INTERVALS = 40  # intervals of the first mesh
+STEP = 0.01  # step of differences, in units of the states and of the parameters
+# sizes of the first orbit, and changes of the parameters, in these units; tried in this order
+SHARES = (0.1, 0.03, 0.01, 0.003)
+ALIKE = 0.5  # smallest ratio of the size of a solved orbit to the predicted one
 
 
 class Asymptotics:
-    """Homoclinic orbits beside a Bogdanov-Takens point, to first order in e.
+    """Homoclinic orbits near a Bogdanov-Takens point, to first order in e; see the top of this module.
 
     Parameters
     ----------
     problem : Equilibria
-        At the point's value of the second parameter.
+        Equilibria at the point's value of the second parameter.
     u : ndarray, shape (d,)
     value : (float, float)
-        Of the parameters at the point.
+        Values of the two parameters at the point.
     over : str
-        Name of the second one.
+        Name of the second parameter.
     units : (float, float)
-        Of both.
+        Units of the two parameters.
     """
 
     def __init__(
@@ -198,7 +212,7 @@ class Asymptotics:
         self.states, self.across, self.bend = (first, second), np.append(np.zeros(d), across), bend
 
     def _line(self, direction: np.ndarray) -> np.ndarray:
-        """The rates at seven places along a direction, in their units."""
+        """Rates at seven points along a direction, in units of the states."""
         found = []
         for k in range(-3, 4):
             z = self.start + STEP * k * direction * self.units
@@ -207,23 +221,23 @@ class Asymptotics:
         return np.array(found) / self.units[: self.d]
 
     def _along(self, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First and second derivative of the rates along a direction."""
+        """First and second derivatives of the rates along a direction."""
         line = self._line(direction)
         slope = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
         return slope @ line / STEP, BEND @ line / STEP**2
 
     def _bent(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """The second derivative along two directions."""
+        """Mixed second derivative of the rates along two directions."""
         return 0.25 * (self._along(one + other)[1] - self._along(one - other)[1])
 
     def largest(self, share: float) -> float:
-        """The e at which orbits have a size, or parameters have changed, by a share of their units."""
+        """Return the e at which the size of the orbit, or the change of a parameter, is a given share of its unit."""
         moved = 10.0 / 7.0 * np.abs(self.b / self.a * self.by_second)
         size = np.maximum(6.0 / abs(self.a) * np.abs(self.states[0]), moved)
         return float(np.sqrt(share / size.max()))
 
     def orbit(self, e: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """States at places in units of the period, both parameters, and the period."""
+        """Return the states at places in units of the period, the two parameters, and the period."""
         s = SIDE * (2.0 * places - 1.0)
         c, t, ratio = np.cosh(s), np.tanh(s), self.b / self.a
         v = 2.0 - 6.0 / c**2 - e * ratio * 72.0 / 7.0 * t * np.log(c) / c**2
@@ -236,7 +250,7 @@ class Asymptotics:
 
 
 def homoclinic_of(point: PlanePoint, bounds: Interval, within: Interval) -> Iterator[Candidate]:
-    """A homoclinic orbit of a long period beside a Bogdanov-Takens point of a flow; none where the point is degenerate."""
+    """Generate one cycle of a long period that represents the homoclinic orbit near a Bogdanov-Takens point of a flow; none if the point is degenerate."""
     problem, (p, q) = point.attached, point.value
     if not isinstance(problem, Equilibria):
         return

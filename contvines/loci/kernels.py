@@ -1,38 +1,40 @@
-"""Kernels of a locus: the special points of F(u, p) = 0 as solutions of a larger system, against a second parameter q.
+"""Kernels of a locus: special points of F(u, p, q) = 0 as solutions of an extended system, continued in the second parameter q.
 
-Unknowns are U = (u, p), at branch points (u, p, e), p in units of data.unit; q is the parameter in which the locus is continued. The
-equations are
+The unknowns are U = (u, p), at branch points (u, p, e), with p in units of data.unit; q is the continuation parameter. The equations are
 
     F(u, p, q) + e b = 0,    g(u, p, q) = 0    (at branch points two of them),
 
 minimally augmented (Griewank and Reddien, Math. Comp. 43 (1984) 511; Govaerts, Numerical Methods for Bifurcations of
 Dynamical Equilibria, 2000, chapters 3 and 4). With borders b and c, M = [[F_u, b], [c, 0]] and M (v, g) = (0, 1):
 
-    fold             g, which is zero where F_u is singular
-    flip             g of F_u with its closure turned round: perturbations that change sign over the period
+    fold             g, which is zero if F_u is singular
+    flip             g of the flipped F_u, for perturbations that change sign over the period
     branch point     g, and the last entry of M^-1 (F_p, 0): F_u and (F_u, F_p) lose rank together; e stays zero
-    margin           one margin of admissibility
-    period           the period, an unknown, has a given value: of cycles that stand for homoclinic orbits
-    growth           the logarithm of the only multiplier, at folds of cycles in the plane
-    pair             m1 m2 - 1 for the multipliers of a pair, l1 + l2 for eigenvalues of a flow
+    margin           one margin, of a border
+    period           the period, an unknown, minus a given value: for cycles that represent homoclinic orbits
+    growth           the logarithm of the only multiplier, for folds of cycles in the plane
+    pair             m1 m2 - 1 for a pair of multipliers, l1 + l2 for eigenvalues of a flow
+    own              the condition of a user-defined kind
 
-Every solve is one elimination of the problem's own kernel with another column in the place of F_p. What is left are two (at branch
-points three) directions in which F = 0 holds to first order from the point at which the residuals of F are made up
-for. There the tests are evaluated, so that a Newton step has a residual g of the second order; they are differentiated along these directions alone, by
-differences. Directions and slopes are not worked out again where Newton's method has hardly moved: the residuals stay exact, so nothing of
-the location is lost. The borders are renewed after a few accepted points, sooner
-where the null vector turns: c becomes the null vector, b the left one.
+One Newton step works as follows. Each linear system is one elimination by the problem's kernel, with another column in place of F_p.
 
-The directions: with the slopes along both parameters in units of their sizes, turned by an angle into C1 and C2, one elimination solves
+1. A particular direction corrects the residuals of F to first order. The tests g are evaluated at the corrected point, so that their error is of
+   second order in the step.
+2. Two further directions (at branch points three) keep F = 0 to first order. The tests are differentiated along these directions only, by differences.
+3. A small system with these derivatives and the border gives the step and the tangent.
 
-    [[F_u, C1], [row]] (x, s) = (-C2, 0)  and  (0, 1):
+Directions and derivatives are reused if Newton's method has hardly moved; the residuals remain exact, so this does not affect the accuracy. The borders
+are renewed after a few accepted points, or earlier if the null vector turns: c becomes the right null vector, b the left one.
 
-two directions in which F stays zero, s C1 + C2 or s C1 being the change of the parameters. `row` is the second of these directions at
-the point before, and C1 is across the parameters' part of the first: where that is so the matrix is regular wherever (F_u, F_p, F_q)
-has full rank, at folds and where branches cross, too. At branch points it has not: there b takes the place of C1, and one more
-direction goes along the null vector.
+The two directions: let C1 and C2 be the derivatives of F by the two parameters, in units of their sizes, rotated by an angle. One elimination solves
 
-native/loci.hpp has the same for compiled problems.
+    [[F_u, C1], [row]] (x, s) = (-C2, 0)  and  (0, 1),
+
+which gives two directions with F = 0, in which the parameters change by s C1 + C2 and by s C1. `row` is the second of these directions at the previous
+point, and C1 is orthogonal to the parameter part of the first one. Then the matrix is regular wherever (F_u, F_p, F_q) has full rank, also at folds and
+where branches cross. At branch points the rank is not full: b replaces C1, and there is one more direction, along the null vector.
+
+native/loci.hpp does the same for compiled problems.
 """
 
 import math
@@ -44,11 +46,11 @@ from ..problems.protocol import Problem
 from ..shared.numbers import PIVOT, ROUNDED
 from .settings import SCALING
 
-# in Python alone: PERIOD, one of the unknowns, the period, has a given value; GROWTH, the only multiplier is 1; OWN, the condition of a user's kind
+# conditions of loci; PERIOD, GROWTH and OWN exist in Python only
 FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD, GROWTH, OWN = range(8)
-APART = 0.03  # of its size: how far from an equilibrium a cycle may stay that stands for a homoclinic orbit
+APART = 0.03  # largest distance from an equilibrium, relative to its size, of a cycle that represents a homoclinic orbit
 
-#: kind of a special point -> what is followed, unless it is a border (then its margin)
+#: kind of a special point -> condition of its locus; borders have the condition MARGIN
 CONDITIONS = {
     "fold": FOLD,
     "branch-point": BRANCH,
@@ -59,18 +61,19 @@ CONDITIONS = {
     "homoclinic": PERIOD,
 }
 
-ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of `solutions`, the last one with another after it
+ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of `solutions`; SPARE has two
 B, C, FLIP_B, FLIP_C = range(4)  # rows of `borders`
-KNOWN, SIGN, ANGLE, SERVED = range(4)  # of `state`; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
-LONGEST = 4  # points that borders serve
-TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more
+# entries of `state`; KNOWN: -1 nothing is valid, 0 the directions are, 1 the tests' derivatives, too
+KNOWN, SIGN, ANGLE, SERVED = range(4)
+LONGEST = 4  # points after which borders are renewed
+TURNED = 1.02  # length of the null vector at which borders are renewed; it is 1 when they are new
 
 
 def condition(problem: Problem, kind: str) -> int:
-    """What is followed for a special point of this kind, seen in this problem.
+    """Return the condition of the locus of special points of a kind, in a given problem.
 
-    A symmetry breaking or period doubling is a multiplier -1 where the problem says so (``flip_kind``), else a branch point
-    of the problem itself, on the fixed space of a symmetry.
+    A symmetry breaking or period doubling is a multiplier -1 if the problem's ``flip_kind`` is this kind; else it is a branch point
+    of the problem on solutions with a symmetry.
     """
     found = CONDITIONS.get(kind, MARGIN)
     if found == FLIP and not (problem.spectrum == "map" and problem.flip_kind == kind):
@@ -80,7 +83,7 @@ def condition(problem: Problem, kind: str) -> int:
 
 # ------------------------------------------------------------------ tests
 def null_test(data, work, b, c):
-    """Solve M (v, g) = (0, 1) with the linearisation in `trial`; returns g."""
+    """Solve M (v, g) = (0, 1) with the linearisation in `trial`; return g."""
     line, step, null = *work.lines, work.solutions[TESTED]
     work.trial_F[:], work.trial_Q[:], line[:-1], line[-1] = 0.0, b[:-1], c[:-1], 0.0
     data.calls.bordered(data.first, work.trial, line, 0.0, step, null)
@@ -88,9 +91,9 @@ def null_test(data, work, b, c):
 
 
 def pair_of(row, multipliers, flow, reference):
-    """(test, position) of the pair nearest to the stability boundary and to the reference; NaN where there is none.
+    """Return (test, position) of the pair nearest to the stability boundary and to the reference; NaN if there is none.
 
-    Maps: m1 m2 - 1 and (m1 + m2)/2, the cosine of the angle; flows: l1 + l2 and l1 l2, the square of the frequency.
+    For maps these are m1 m2 - 1 and (m1 + m2)/2, the cosine of the angle; for flows l1 + l2 and l1 l2, the square of the frequency.
     """
     found, best = (math.nan, math.nan), math.inf
     for i in range(multipliers):
@@ -100,7 +103,7 @@ def pair_of(row, multipliers, flow, reference):
             if abs(b + d) > LOCATING.rounding * (1.0 + abs(b)) or (
                 b != 0.0 and abs(a - c) > LOCATING.rounding * (1.0 + abs(a))
             ):
-                continue  # neither two real ones nor a conjugate pair
+                continue  # neither two real multipliers nor a conjugate pair
             total, product = a + c, a * c - b * d
             test, place = (total, product) if flow else (product - 1.0, 0.5 * total)
             unit = 1.0 + abs(reference) if flow else 1.0
@@ -111,14 +114,14 @@ def pair_of(row, multipliers, flow, reference):
 
 
 def tests(data, work, u, p, q, values):
-    """The tests g at any (u, p, q), into `values`; the linearisation in `trial` is used up."""
+    """Evaluate the tests g at any (u, p, q) into `values`; the linearisation in `trial` is overwritten."""
     first, trial, borders, calls, kind = data.first, work.trial, work.borders, data.calls, data.kind
     calls.assign(first, data.second, q)
     if not math.isfinite(calls.linearise(first, u, p, trial)):
         return
     if kind == FOLD:
         values[0] = null_test(data, work, borders[B], borders[C])
-    elif kind == FLIP:  # the linearisation is left as it was
+    elif kind == FLIP:  # the second flip restores the linearisation
         calls.flip(first, trial, -1.0)
         values[0] = null_test(data, work, borders[FLIP_B], borders[FLIP_C])
         calls.flip(first, trial, 1.0)
@@ -144,7 +147,7 @@ def tests(data, work, u, p, q, values):
 
 
 def slopes_along(data, work, direction):
-    """Derivatives of the tests along a direction in (U, q), by differences."""
+    """Return the derivatives of the tests along a direction in (U, q), by differences."""
     point, n = work.point, len(work.base_F)
     slopes = np.zeros(len(point) - 1 - n)
     parts = np.abs(direction) / np.maximum(work.scales[: len(point)], np.abs(point))
@@ -157,15 +160,15 @@ def slopes_along(data, work, direction):
     return (slopes - work.values[: len(slopes)]) / h
 
 
-# ------------------------------------------------------------------ directions in which F = 0 holds
+# ------------------------------------------------------------------ directions with F = 0
 def rotate(columns, angle):
-    """Turn C1 and C2 further."""
+    """Rotate C1 and C2 by a further angle, in place."""
     c, s = math.cos(angle), math.sin(angle)
     columns[0], columns[1] = c * columns[0] + s * columns[1], c * columns[1] - s * columns[0]
 
 
 def turn(work):
-    """Angle and row from the two directions found last; returns by how much the angle changes."""
+    """Update angle and row from the last two directions; return the change of the angle."""
     along, null = work.solutions[ALONG], work.solutions[NULL]
     n = len(null) - 1
     angle = -math.atan(along[n])
@@ -180,7 +183,7 @@ def turn(work):
 
 
 def parted(work, k, solution):
-    """Direction k: unknowns of a solution, and what its part along C1 means for the parameters."""
+    """Write direction k from a solution: its unknowns, and the changes of the parameters from its last entry (along C1)."""
     direction, scales, angle = work.directions[k], work.scales, work.state[ANGLE]
     n = len(solution) - 1
     direction[:n] = solution[:n]
@@ -189,21 +192,21 @@ def parted(work, k, solution):
 
 
 def unfolded(work, k, solution, p=0.0, q=0.0):
-    """Direction k at branch points: unknowns and unfolding of a solution, and changes of the parameters."""
+    """Write direction k at branch points: unknowns and unfolding e from a solution, and given changes of the parameters."""
     direction, n = work.directions[k], len(solution) - 1
     direction[:n] = solution[:n]
     direction[n:] = p, solution[n], q
 
 
 def solve(data, work, side, column, row, step, tangent):
-    """[[F_u, column], [row]] x = (-side, 0) into `step`, (0, 1) into `tangent`; returns the determinant's sign."""
+    """Solve [[F_u, column], [row]] x = (-side, 0) into `step` and = (0, 1) into `tangent`; return the determinant's sign."""
     n = len(work.base_F)
     work.base_F[:], work.base_Q[:] = side[:n], column[:n]
     return data.calls.bordered(data.first, work.base, row, 0.0, step, tangent)
 
 
 def span(data, work):
-    """The directions but the particular one; F_p and F_q, in the units of U and q, are in `columns` and are used up."""
+    """Compute all directions except the particular one; `columns` holds F_p and F_q and is overwritten."""
     columns, directions, state, scales = work.columns, work.directions, work.state, work.scales
     along, null, frame = work.solutions[ALONG], work.solutions[NULL], work.frame
     n, last = columns.shape[1], directions.shape[1] - 1
@@ -219,7 +222,7 @@ def span(data, work):
         if state[KNOWN] >= 0.0:
             turn(work)
             rotate(columns, state[ANGLE])
-        else:  # any row, then the one that belongs to this place
+        else:  # the first time: start with a random row, then use the one of this point
             frame[:n] /= scales[:n]
             rotate(columns, state[ANGLE])
             solve(data, work, columns[1], columns[0], frame, along, null)
@@ -233,7 +236,7 @@ def span(data, work):
 
 
 def particular(data, work):
-    """Direction 0: what makes up for the residuals of F; the sign of the elimination is kept."""
+    """Compute direction 0, which corrects the residuals of F, and store the sign of the determinant."""
     found, spare = work.solutions[SPARE], work.solutions[SPARE + 1]
     if data.kind == BRANCH:
         row = np.append(work.borders[C, :-1], 0.0)
@@ -246,9 +249,9 @@ def particular(data, work):
 
 # ------------------------------------------------------------------ the kernels
 def frozen(work, here):
-    """Whether directions and slopes are those of the last call, because the point has hardly moved; keeps the point if not.
+    """Whether the point has moved so little that directions and derivatives of the last call can be reused; if not, store the point.
 
-    Slopes are known to about the step; a point that has moved less than that has them to that accuracy.
+    The derivatives have errors of about the difference step, and they do not change more over such a distance.
     """
     sizes = np.maximum(work.scales[: len(here)], np.abs(here))
     if work.state[KNOWN] > 0.0 and (np.abs(here - work.frozen) < SCALING.step * sizes).all():
@@ -258,7 +261,7 @@ def frozen(work, here):
 
 
 def locus_linearise(data, U, q, work):
-    """F, F_u, F_p, F_q and the tests at (U, q); see `linearise` in the protocol."""
+    """Evaluate F, its derivatives and the tests at (U, q); see `linearise` in the protocol."""
     first, second, base, state, residuals = data.first, data.second, work.base, work.state, work.residual
     n, size, calls = len(work.base_F), len(U), data.calls
     u, p = U[:n], data.unit * U[n]
@@ -291,9 +294,9 @@ def locus_bordered(data, work, border, target, step, tangent):
     """Solve the bordered system of the locus; see `bordered` in the protocol."""
     directions, residuals, state = work.directions, work.residual, work.state
     n = len(work.base_F)
-    count = len(residuals) - n  # tests; there are as many directions, and the one along the locus
+    count = len(residuals) - n  # number of tests; besides the particular direction there are count + 1
     others, slopes = directions[1 : count + 2], np.zeros(count)
-    # else the residuals are those of the point, for which the particular direction stands
+    # if the caller has changed the residuals, the particular direction must be computed again
     if (residuals != work.kept).any():
         particular(data, work)
         slopes = slopes_along(data, work, directions[0])
@@ -313,7 +316,7 @@ def locus_bordered(data, work, border, target, step, tangent):
 
 
 def close(small):
-    """Gauss elimination with row exchange of a few equations with two right-hand sides; returns the determinant's sign."""
+    """Solve a small system with two right-hand sides by Gauss elimination with pivoting, in place; return the determinant's sign."""
     sign, size = 1.0, len(small)
     for j in range(size):
         best = j + int(np.abs(small[j:, j]).argmax())
@@ -331,7 +334,7 @@ def close(small):
 
 
 def renew(data, work, b, c, null):
-    """Borders from the null vectors: c along `null`, b along the left one, in units of the scales; the linearisation is in `base`."""
+    """Renew the borders: c along the right null vector `null`, b along the left one, in units of the scales; `base` holds the linearisation."""
     n = len(b) - 1
     lines, left, scales, rows = work.lines, work.solutions[LEFT], work.scales[:n], work.rows
     size = float(np.linalg.norm(null[:n] / scales))
@@ -349,7 +352,7 @@ def renew(data, work, b, c, null):
 
 
 def worn(work, null):
-    """Whether borders are due: the null vector has turned away from c, or they have served a few points."""
+    """Whether the borders should be renewed: the null vector has turned away from c, or they have been used for LONGEST points."""
     state, n = work.state, len(null) - 1
     state[SERVED] += 1.0
     if state[SERVED] < LONGEST and np.linalg.norm(null[:n] / work.scales[:n]) < TURNED:
@@ -359,25 +362,25 @@ def worn(work, null):
 
 
 def locus_inspect(data, U, q, work, row):
-    """Multipliers and margins of the problem, then of the locus: p within its bounds, and the pair still a pair.
+    """Write multipliers and margins of the problem, then three margins of the locus: p above and below its bounds, and the pair still complex.
 
-    The borders are renewed where they are due.
+    It also renews the borders if necessary.
     """
     first, base, borders, reference = data.first, work.base, work.borders, work.reference
     kind, null, margins = data.kind, work.solutions[TESTED], row[2 * data.multipliers :]
     n = len(work.base_F)
     if kind in (FOLD, BRANCH, FLIP) and worn(work, null):
-        work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # slopes belong to the borders
+        work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # derivatives with the old borders are invalid
         if kind != FLIP:
             renew(data, work, borders[B], borders[C], null)
         else:
             data.calls.flip(first, base, -1.0)
             renew(data, work, borders[FLIP_B], borders[FLIP_C], null)
             data.calls.flip(first, base, 1.0)
-    data.calls.assign(first, data.second, q)  # the tests have asked nearby
+    data.calls.assign(first, data.second, q)  # the tests were evaluated at other values of q
     data.calls.inspect(first, U[:n], data.unit * U[n], base, row[:-3])
     margins[-3:] = U[n] - reference[3], reference[4] - U[n], math.inf
-    if kind == PERIOD:  # a homoclinic orbit is near as long as the cycle comes near to an equilibrium
+    if kind == PERIOD:  # the cycle represents a homoclinic orbit as long as it comes near an equilibrium
         margins[0] = math.log10(APART / first.from_rest(U[:n], data.unit * U[n]))
     margins[work.masked] = math.inf
     if kind == PAIR:

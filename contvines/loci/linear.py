@@ -1,4 +1,4 @@
-"""A problem's linearisation from Python: solves with borders, null vectors, multipliers and margins, at single points."""
+"""Linearisation of a problem at single points: bordered solutions, null vectors, multipliers and margins, through the problem's kernels."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..long_work import HELD
 from ..problems.protocol import Problem, array_of
 from .kernels import BRANCH, FLIP, FOLD, pair_of
 
-SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
-STIRRED = 0.1  # part of a random vector in those of a neighbour
+SWEEPS = 4  # inverse iterations from random borders to null vectors, which are then accurate to roundoff if the matrix is singular
+STIRRED = 0.1  # part of a random vector that is added to the null vectors of a neighbouring point before an iteration
 
 
 class Null(NamedTuple):
-    """The null direction of a nearly singular matrix, the borders that belong to it, and the test g that is zero where it is singular.
+    """Right null vector of a nearly singular matrix, borders ``column`` and ``row``, and the test g, which is zero if the matrix is singular.
 
-    With unknowns and equations in units of their scales the borders are the left and the right null vector, of unit length.
+    In units of unknowns and equations the borders are the left and the right null vector, of unit length.
     """
 
     right: np.ndarray
@@ -30,17 +30,17 @@ class Null(NamedTuple):
 
 
 class Linearisation:
-    """F, F_u and F_p of a problem at one point, and solves with them through the problem's own kernels.
+    """F, F_u and F_p of a problem at one point, and linear systems with F_u, solved by the problem's own kernels.
 
     Parameters
     ----------
     problem : Problem
-        With the optional kernels of the protocol.
+        Its kernels must have the optional entries of the protocol.
 
     Attributes
     ----------
     units, rows : ndarray, shape (N,)
-        Typical sizes of the unknowns and of the equations; 1 where the problem has natural units.
+        Typical sizes of the unknowns and of the equations; 1 if the problem has no scales.
     largest : float
         Largest residual.
     residual, slope : ndarray, shape (N,)
@@ -62,11 +62,11 @@ class Linearisation:
         self.largest, self.residual, self.slope = np.inf, *np.zeros((2, self.size))
         self.point: tuple[np.ndarray, float] = (np.zeros(self.size), 0.0)
         self._row: np.ndarray | None = None
-        self.overwritten = True  # F and F_p, by sides of a solve
-        self.used_up = True  # all of it, by an inspection or a flip
+        self.overwritten = True  # whether right-hand sides have overwritten F and F_p in the workspace
+        self.used_up = True  # whether an inspection or a flip has changed F_u in the workspace
 
     def at(self, u: np.ndarray, p: float) -> Self:
-        """Linearise."""
+        """Linearise at a point; return self."""
         self.point, self._row = (np.array(u, dtype=float), float(p)), None
         self.largest = self._linearise()
         self.residual, self.slope = self.F.copy(), self.Q.copy()
@@ -77,30 +77,30 @@ class Linearisation:
         return float(self.kernels.linearise(self.data, *self.point, self.work))
 
     def _matrix(self) -> None:
-        """Linearise at the same point once more if F_u has been used up; its F and F_p are about to be overwritten."""
+        """Make sure that the workspace holds F_u, by linearising again if necessary; the caller will overwrite F and F_p."""
         if self.used_up:
             self._linearise()
         self.overwritten = True
 
     # ------------------------------------------------------------------ solves
     def _solved(self, side: np.ndarray | float, b: np.ndarray, c: np.ndarray) -> None:
-        """Solve with F_u, bordered by b and c: (side, 0) on the right, into `step`, and (0, 1), into `tangent`."""
+        """Solve [[F_u, b], [c, 0]] x = (side, 0) into ``step``, and = (0, 1) into ``tangent``."""
         self._matrix()
         self.F[:], self.Q[:], self.line[:-1], self.line[-1] = -side, b, c, 0.0
         self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
 
     def solve(self, side: np.ndarray, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
-        """(x, s) with F_u x + b s = side and c.x = 0."""
+        """Return (x, s) with F_u x + b s = side and c.x = 0."""
         self._solved(side, b, c)
         return self.step[:-1].copy(), float(self.step[-1])
 
     def null(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
-        """(v, g) with F_u v + b g = 0 and c.v = 1."""
+        """Return (v, g) with F_u v + b g = 0 and c.v = 1."""
         self._solved(0.0, b, c)
         return self.tangent[:-1].copy(), float(self.tangent[-1])
 
     def left(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
-        """(w, g) with F_u^T w + c g = 0 and b.w = 1."""
+        """Return (w, g) with F_u^T w + c g = 0 and b.w = 1."""
         self._matrix()
         assert self.kernels.transpose is not None
         self.kernels.transpose(self.data, self.work, np.ascontiguousarray(c), self.other)
@@ -110,7 +110,7 @@ class Linearisation:
 
     @contextmanager
     def flipped(self) -> Iterator[None]:
-        """Within it F_u is that of perturbations that change sign over the period."""
+        """Context in which F_u acts on perturbations that change sign over the period."""
         self._matrix()
         assert self.kernels.flip is not None
         self.kernels.flip(self.data, self.work, -1.0)
@@ -120,14 +120,18 @@ class Linearisation:
             self.used_up = True
 
     def null_vectors(self, flipped: bool = False, near: Null | None = None) -> Null:
-        """The null vectors of the matrix, or of the flipped one; for a regular one those of its smallest singular values.
+        """Return the null vectors of F_u, or of the flipped F_u; for a regular matrix approximate singular vectors of the smallest singular value.
 
-        ``near`` are those of a neighbour.
+        Parameters
+        ----------
+        flipped : bool
+        near : Null, optional
+            Null vectors of a neighbouring point, from which one iteration is enough.
         """
         v, w = np.random.default_rng(5).standard_normal((2, self.size)) / np.sqrt(self.size)
         b, c, sweeps = self.rows * w, v / self.units, SWEEPS
         if near is not None:
-            # of another singular value, where those have passed one another: a part of all others must be left
+            # the smallest singular value may have changed places with another one: keep a component along all singular vectors
             b, c, sweeps = near.column + STIRRED * b, near.row + STIRRED * c, 1
         with self.flipped() if flipped else nullcontext():
             for _ in range(sweeps):
@@ -138,14 +142,14 @@ class Linearisation:
         return Null(v / np.linalg.norm(v / self.units), b, c, g)
 
     def border_of(self, direction: np.ndarray) -> np.ndarray:
-        """The row along a direction of the unknowns, of unit length in units of their scales."""
+        """Return the row along a direction of the unknowns, of unit length in units of their scales."""
         scaled = direction / self.units
         return scaled / np.linalg.norm(scaled) / self.units
 
     # ------------------------------------------------------------------ multipliers and margins
     @property
     def row(self) -> np.ndarray:
-        """Multipliers as (re, im) pairs, then margins."""
+        """Raw multipliers as (re, im) pairs, then margins."""
         if self._row is None:
             self._row = np.zeros(2 * self.m + int(self.problem.n_margins))
             if self.overwritten or self.used_up:
@@ -157,7 +161,7 @@ class Linearisation:
 
     @property
     def margins(self) -> np.ndarray:
-        """Distances from borders."""
+        """Margins: distances from borders, positive inside."""
         return self.row[2 * self.m :]
 
     @property
@@ -166,57 +170,61 @@ class Linearisation:
         return self.row[0 : 2 * self.m : 2] + 1j * self.row[1 : 2 * self.m : 2]
 
     def pair(self, reference: float) -> tuple[float, float]:
-        """(test, position) of the pair of multipliers nearest to the boundary and to a reference; see ``pair_of``."""
+        """Return (test, position) of the pair of multipliers nearest to the stability boundary and to a reference; see ``pair_of``."""
         return pair_of(self.row, self.m, self.flow, reference)
 
     def positions(self) -> np.ndarray:
-        """Positions of all complex pairs, see ``pair_of``, the most critical one first."""
+        """Return the positions of all complex pairs, see ``pair_of``, the most critical one first."""
         pairs = critical_first(self.spectrum, self.flow)
         return np.abs(pairs) ** 2 if self.flow else pairs.real
 
 
 def critical_first(spectrum: NDArray[np.complex128], flow: bool) -> NDArray[np.complex128]:
-    """The multipliers, or eigenvalues, with positive imaginary part, those nearest to the stability boundary first."""
+    """Return the multipliers, or eigenvalues, with positive imaginary part, those nearest to the stability boundary first."""
     upper = spectrum[spectrum.imag > 0.0]
     return upper[np.argsort(np.abs(upper.real if flow else np.abs(upper) - 1.0), kind="stable")]
 
 
 def singularity(problem: Problem, u: np.ndarray, p: float) -> float:
-    """The test that vanishes where the equations are singular, without its sign."""
+    """Return the magnitude of the test g, which vanishes where F_u is singular."""
     return abs(Linearisation(problem).at(u, p).null_vectors().test)
 
 
 def fresh_borders(size: int) -> np.ndarray:
-    """Borders without a pattern, shape (4, size + 1)."""
+    """Return random borders, shape (4, size + 1)."""
     return np.random.default_rng(5).standard_normal((4, size + 1)) / np.sqrt(size)
 
 
 def borders_at(
     problem: Problem, wanted: int, u: np.ndarray, p: float, near: np.ndarray | None = None
 ) -> np.ndarray:
-    """Borders of the bordered systems of a locus that belong to a point: null vectors of the matrix that is singular there.
+    """Compute the borders of a locus at a point: null vectors of the matrix that is singular there.
 
     Parameters
     ----------
     problem : Problem
     wanted : int
-        The condition that is followed; see :mod:`contvines.loci.kernels`.
+        Condition of the locus; see :mod:`contvines.loci.kernels`.
     u, p
         The point.
     near : ndarray, optional
-        Borders of a neighbour, whose orientation is kept: the sign of the determinant depends on it.
+        Borders of a neighbouring point, whose orientation is kept, since the sign of the determinant depends on it.
+
+    Returns
+    -------
+    ndarray, shape (4, N + 1)
     """
     if near is not None and wanted not in (FOLD, BRANCH, FLIP):
         return near.copy()
     line = Linearisation(problem).at(u, p)
     n = line.size
     borders = fresh_borders(n) if near is None else near.copy()
-    # columns and rows of a neighbour
+    # null vectors of the neighbour from its borders
     before = [None, None] if near is None else [Null(c, b, c, 0.0) for b, c in near[:, :-1].reshape(2, 2, n)]
     null = line.null_vectors(near=before[0])
     if wanted in (FOLD, BRANCH):
         borders[0, :n], borders[1, :n] = null.column, null.row
-    elif near is None:  # a regular matrix: any borders that are not special
+    elif near is None:  # F_u is regular: any generic borders do
         b = line.rows * (np.random.default_rng(6).standard_normal(n) / np.sqrt(n))
         v, _ = line.null(b, null.row)
         borders[0, :n], borders[1, :n] = b, line.border_of(v)

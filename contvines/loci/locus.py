@@ -1,4 +1,4 @@
-"""Locus: the special points of one kind in the plane of two parameters; PlanePoint: a point of codimension two on it, with its evidence."""
+"""Locus: a curve of special points of one kind in the plane of two parameters; PlanePoint: a point of codimension two on it."""
 
 from __future__ import annotations
 
@@ -29,23 +29,28 @@ class PlanePoint:
     ----------
     label, kind : str
     parameters : (str, str)
+        Names of the first and the second parameter.
     value : (float, float)
+        Their values.
     u : ndarray, shape (N,)
-        The motion, in the unknowns of ``problem``.
+        The motion, as unknowns of ``problem``.
     on : list of str
-        Labels of the loci on which it lies.
+        Labels of the loci on which the point lies.
     coefficients : dict
-        Of its normal form; see :mod:`contvines.bifurcation.normal_forms.coefficients`.
+        Coefficients of its normal form; see :mod:`contvines.bifurcation.normal_forms.coefficients`.
     multipliers : ndarray of complex
-        Of the full period.
+        Multipliers over the full period.
     real : bool
+        Whether all margins of the motion are positive or zero.
     error : float
-        Of both values, relative: the last correction of Newton's method, of cycles on a mesh also what the mesh leaves.
+        Relative error of both values: the last correction of Newton's method, and for cycles also the error of the mesh.
     residual : float
+        Largest residual of the equations.
     margins : tuple of int
-        Places of the margins that vanish there.
+        Indices of the margins that vanish at the point.
     note : str
     problem : Problem or None
+        None if the point was loaded without it.
     """
 
     label: str
@@ -65,7 +70,7 @@ class PlanePoint:
 
     @property
     def attached(self) -> Problem:
-        """The problem.
+        """The problem of the motion.
 
         Raises
         ------
@@ -78,11 +83,11 @@ class PlanePoint:
 
     @property
     def orbit(self) -> object:
-        """The motion as the object that its problem hands to users; see :attr:`contvines.SpecialPoint.orbit`."""
+        """The motion as an orbit object of its problem; see :attr:`contvines.SpecialPoint.orbit`."""
         return critical(self.attached.orbit(self.u, self.value[0]), self.kind)
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry of this point in the JSON of a chart."""
+        """Return the entry of this point in the JSON of a chart."""
         return {
             "label": self.label,
             "kind": self.kind,
@@ -99,7 +104,7 @@ class PlanePoint:
 
 @dataclass(frozen=True)
 class Turn:
-    """A point at which the locus turns round in the second parameter."""
+    """A turning point of a locus in the second parameter: index of a point of the locus, and (p, q)."""
 
     index: int
     value: tuple[float, float]
@@ -114,30 +119,30 @@ class Locus:
     ----------
     label : str
     kind : str
-        Of the special points.
+        Kind of the special points.
     parameters : (str, str)
         The parameter of the diagram and the second one.
     branch : Branch
-        The locus as a branch against the second parameter: ``points`` are (u, p), ``values`` those of the second parameter.
+        The locus as a branch in the second parameter: ``points`` are (u, p), ``values`` those of the second parameter.
     real : ndarray of bool, shape (n,)
-        False beyond a border, where no machine follows the motion.
+        False beyond a border, where no machine can follow the motion.
     seed : str or None
         Label of the special point from which it was started.
     marks : tuple of (int, str)
-        Index (of the point before it) and label of each point of codimension two on it.
+        Each point of codimension two on it: index of the locus's point before it, and label.
     points : dict of PlanePoint
-        The same points by label. Marks and points are sought when one of them is first asked for; a chart has sought them already.
+        The same points by label. They are computed when marks or points are first accessed; a chart has computed them already.
     turns : tuple of Turn
-        Where it turns round in the second parameter.
+        Turning points in the second parameter.
     within : (float, float)
         Interval of the second parameter.
     kinds : tuple of Kind
-        The user's own: zeros of their tests along the locus are points, too.
+        User-defined kinds; zeros of their tests along the locus are points, too.
     beyond : int
-        Of a border: on which side of it, looking along the points with q to the right and p upwards, the motion cannot be: 1
-        left, -1 right, 0 not known.
+        For a border: the side on which the motion is impossible, seen in the direction of the points with q to the right and p upwards:
+        1 left, -1 right, 0 unknown.
     limit : {"", "homoclinic", "heteroclinic", "saddle-node", "at-rest"}
-        Of cycles of a long period: what they become, where the locus begins, as the period grows without bound.
+        For cycles of a long period: their limit of infinite period, at the start of the locus.
     """
 
     label: str
@@ -163,12 +168,12 @@ class Locus:
 
     @property
     def sort(self) -> str:
-        """As tables and pictures name it: its kind, or what its cycles of a long period become."""
+        """Name in tables and pictures: the limit of cycles of a long period, else the kind."""
         return self.limit or self.kind
 
     @property
     def problem(self) -> LocusProblem | None:
-        """None after loading without the problem."""
+        """Problem of the locus; None if it was loaded without it."""
         problem = self.branch.problem
         return problem if isinstance(problem, LocusProblem) else None
 
@@ -207,30 +212,30 @@ class Locus:
 
     @property
     def ended(self) -> tuple[str, str]:
-        """Why the locus ends, at its first and at its last point."""
+        """Reasons why the locus ends at its first and at its last point."""
         return self.branch.ended
 
     @property
     def closed(self) -> bool:
-        """Whether the last point is the first one again."""
+        """Whether the locus is a closed curve."""
         return self.branch.closed
 
     def orbit(self, i: int) -> object:
-        """The special solution at point i as the object that the problem hands to users."""
+        """Return the motion at point i as an orbit object of the problem."""
         return self.branch.orbit(i)
 
     def at(self, value: float) -> np.ndarray:
-        """Values of the first parameter where the second one has a value, solved to roundoff.
+        """Solve for the first parameter at a given value of the second one, to roundoff.
 
         Parameters
         ----------
         value : float
-            Of the second parameter.
+            Value of the second parameter.
 
         Returns
         -------
         ndarray, shape (k,)
-            In increasing order; empty where the locus does not pass this value.
+            Values of the first parameter in increasing order; empty if the locus does not reach `value`.
 
         Raises
         ------
@@ -250,7 +255,7 @@ class Locus:
         return found[apart]
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry of this locus in the JSON of a chart."""
+        """Return the entry of this locus in the JSON of a chart."""
         about = self.branch.description
         return {
             "label": self.label,

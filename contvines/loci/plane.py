@@ -1,8 +1,8 @@
-"""Plane: a problem at points of the plane of two parameters, and how margins change there along the branches.
+"""Plane: linearisation of a problem at points (u, p, q) of the plane of two parameters, and changes of margins along branches.
 
-A border is degenerate where a branch touches it and does not cross it. Along the branch, at a fixed second parameter, the margin h then has a
-double zero: two borders of the diagram in one parameter meet there and are gone on the other side, where the motion keeps off the border. The locus
-of the border turns round in the second parameter. With h = a (p - p0)^2 + b (q - q0) + ... along the branches the borders are at
+A border is degenerate if a branch touches it without crossing it. Along the branch, at a fixed second parameter q, the margin h then has a double
+zero: two borders of the one-parameter diagram meet and vanish, and for q on the other side the motion does not reach the border. The locus
+of the border has a turning point in q. With h = a (p - p0)^2 + b (q - q0) + ... along the branches, the borders lie at
 p - p0 = +-sqrt(-b (q - q0) / a).
 """
 
@@ -22,15 +22,14 @@ from .linear import Linearisation, Null
 from .problem import LocusProblem
 from .settings import SCALING, VANISHING
 
-STEP = (
-    Settings.offset
-)  # of the first derivative, along the branch, relative to the sizes of unknowns and parameter
-NARROWER, WIDTHS = 0.35, 9  # widths of the differences, relative to the sizes of the parameters
-BEND = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0  # weights of a second derivative
+STEP = Settings.offset  # step of a margin's derivative along the branch, relative to unknowns and parameter
+NARROWER, WIDTHS = 0.35, 9  # ratio and number of the step sizes that `touching_form` tries
+# weights of a second difference of sixth order
+BEND = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0
 
 
 class Place(NamedTuple):
-    """A point (u, p, q)."""
+    """A point (u, p, q): unknowns, first and second parameter."""
 
     u: np.ndarray
     p: float
@@ -38,22 +37,21 @@ class Place(NamedTuple):
 
 
 class Plane(Linearisation):
-    """A problem's linearisation in the first parameter, multipliers and margins at points (u, p, q).
+    """Linearisation of a locus's underlying problem, with multipliers and margins, at points (u, p, q).
 
     Parameters
     ----------
     locus : LocusProblem
-        Whose problem and parameters are meant.
     """
 
     def __init__(self, locus: LocusProblem) -> None:
-        # problems of its own: a trace changes the parameters of the locus in place
+        # new problems, since a trace changes the parameters of the locus's problems in place
         super().__init__(locus.base.against(locus.inner))
         self.locus, self.second = locus, self.problem.against(locus.over)
         self.place = Place(np.zeros(locus.size), 0.0, 0.0)
 
     def to(self, place: Place) -> bool:
-        """Linearise there, unless the plane is there already; whether that can be done."""
+        """Linearise at a place, unless it is the current one; return whether the equations can be evaluated there."""
         if place is not self.place:
             assert self.kernels.assign is not None
             self.kernels.assign(self.data, self.second.data, float(place.q))
@@ -62,7 +60,7 @@ class Plane(Linearisation):
         return math.isfinite(self.largest)
 
     def other_pair(self, reference: float, second: float) -> float:
-        """The test of the complex pair nearest to a second reference, of those that are not the one nearest to the first; see ``pair_of``."""
+        """Return the test of the complex pair nearest to the reference `second`, without the pair nearest to `reference`; see ``pair_of``."""
         upper = self.spectrum[self.spectrum.imag > 0.0]
         if len(upper) < 2:
             return np.nan
@@ -75,17 +73,17 @@ class Plane(Linearisation):
 
     # ------------------------------------------------------------------ along the branches
     def branch_direction(self, null: Null) -> np.ndarray:
-        """The tangent (du, dp) of the branch, not of unit length; smooth where the branch folds."""
+        """Return the tangent (du, dp) of the branch, not normalised; it is smooth at folds, too."""
         x, s = self.solve(-self.slope, null.column, null.row)
         v, g = self.null(null.column, null.row)
         return np.append(g * x - s * v, g)
 
     def margin_at(self, place: Place) -> float:
-        """The margin of the locus at a place, which may be no solution: what its formula says; NaN where it says nothing."""
+        """Return the locus's margin at a place, which need not be a solution; NaN if it cannot be evaluated."""
         return float(self.margins[self.locus.index]) if self.to(place) else np.nan
 
     def slope_along_branch(self, null: Null) -> float:
-        """Derivative of the margin along the branch through the place, over its arc."""
+        """Return the derivative of the margin along the branch through the current place, by its arclength."""
         place, direction = self.place, self.branch_direction(null)
         sizes = self.locus.sizes_at(*place)[:-1]
         step = STEP * direction / (np.linalg.norm(direction / sizes) or np.nan)
@@ -94,12 +92,12 @@ class Plane(Linearisation):
         return _slope(h) / STEP
 
     def touching_form(self) -> dict[str, float]:
-        """a and b of the margin along the branches round the place; none where it cannot be evaluated there."""
+        """Return the coefficients a and b of the margin at a degenerate border (see the top of this module); empty if they cannot be computed."""
         u, p, q = self.place
         *_, wide, high = self.locus.sizes_at(u, p, q)
 
         def margin(p: float, q: float) -> float:
-            """Of the solution at other parameter values."""
+            """Margin of the solution at other parameter values."""
             engine = Engine(self.locus.at(q), (p - wide, p + wide), Settings())
             found = engine.at_value(u, p)
             return np.nan if found is None else float(engine.margins(found.row)[self.locus.index])
@@ -120,23 +118,23 @@ def _moved(place: Place, direction: np.ndarray) -> Place:
 
 
 def _slope(h: list[float]) -> float:
-    """The derivative from values at -2, -1, 1 and 2 steps, times the step."""
+    """Derivative, times the step, from values at -2, -1, 1 and 2 steps."""
     return (8.0 * (h[2] - h[1]) - (h[3] - h[0])) / 12.0
 
 
 def _best(value: Callable[[float], float]) -> float:
-    """A difference quotient at the width at which it changes least from one width to the next."""
+    """Difference quotient at the step size at which it changes least from one step size to the next."""
     best, error, before = np.nan, np.inf, np.nan
     for width in SCALING.widest * NARROWER ** np.arange(WIDTHS):
-        now = value(float(width))
-        if abs(now - before) < error:
-            best, error = now, abs(now - before)
-        before = now
+        found = value(float(width))
+        if abs(found - before) < error:
+            best, error = found, abs(found - before)
+        before = found
     return best
 
 
 def impossible_side(locus: LocusProblem, branch: Branch) -> int:
-    """On which side of a border, in the plane (q, p), its margin is negative: see :class:`contvines.loci.locus.Locus`."""
+    """Return the side of a border's locus, in the plane (q, p), on which its margin is negative: ``beyond`` of :class:`contvines.loci.locus.Locus`."""
     i = len(branch) // 2
     u, p = locus.split(branch.points[i])
     plane, place = Plane(locus), Place(u, float(p), float(branch.values[i]))
@@ -144,12 +142,12 @@ def impossible_side(locus: LocusProblem, branch: Branch) -> int:
     if abs(null.test) < VANISHING.singular:
         return 0
     direction = plane.branch_direction(null)
-    direction = direction / direction[-1]  # of the motions themselves, over p
+    direction = direction / direction[-1]  # derivative of the motions by p
     *sizes, own, _ = locus.sizes_at(*place)
     largest = float((np.abs(direction[:-1]) / sizes).max())
     step = SCALING.step * min(float(own), 1.0 / max(largest, TINY))
     rise = plane.margin_at(_moved(place, step * direction)) - start
     if not np.isfinite(rise) or rise == 0.0:
         return 0
-    up_is_left = branch.tangents[i][-1] > 0.0  # going to the right, larger p is on the left
+    up_is_left = branch.tangents[i][-1] > 0.0  # if q grows along the locus, larger p is on the left
     return -1 if (rise > 0.0) == up_is_left else 1

@@ -1,4 +1,4 @@
-"""LocusProblem: the special points of one kind as solutions of a problem like any other, against a second parameter."""
+"""LocusProblem: the special points of one kind as solutions of a continuation problem in a second parameter."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from .kernels import (
 from .linear import borders_at, fresh_borders
 from .settings import SCALING
 
-FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
+FURTHER = 100.0  # largest ratio of the scales of a locus to those of the branch
 IN_PYTHON = Kernels(locus_linearise, locus_bordered, locus_inspect)
 NOTHING = np.zeros(0)
 
 
 class Data(NamedTuple):
-    """What the kernels know of a locus; ``memory`` is the struct `Data` of native/loci.hpp."""
+    """The `data` of the kernels of a locus; ``memory`` is the struct `Data` of native/loci.hpp."""
 
     first: object
     second: object
@@ -96,37 +96,37 @@ class Work:
 
 
 class LocusProblem(ProblemDefaults):
-    """Special points of one kind of a problem, against a second parameter.
+    """Special points of one kind of a problem, as solutions with the second parameter q as the continuation parameter.
 
-    Unknowns are (u, p), with the unfolding e at branch points (zero along the locus); the parameter is q.
+    The unknowns are (u, p), at branch points also the unfolding e, which is zero along the locus.
 
     Parameters
     ----------
     problem : Problem
-        With ``parameters``, ``against`` and the optional kernels of the protocol.
+        Its kernels must have the optional entries of the protocol.
     kind : str
-        Of the special points.
+        Kind of the special points.
     over : str
         Name of the second parameter.
     index : int
-        Which margin, for borders.
+        For borders: index of the margin. For homoclinic orbits: index of the period among the unknowns.
     bounds : (float, float)
-        Interval of the first parameter; the locus ends there.
+        Interval of the first parameter; the locus ends at its ends.
     borders : ndarray, shape (4, N + 1), optional
-        Of the bordered systems, as :func:`contvines.loci.starts.begin` finds them.
+        Borders of the bordered systems, as :func:`contvines.loci.starts.begin` computes them.
     reference : float
-        Position of the pair of multipliers; see ``pair_of``.
+        Position of the pair of multipliers, see ``pair_of``; for homoclinic orbits the period.
     masked : sequence of int
-        Margins that are zero all along the locus, as those of a border are.
+        Margins that are zero along the whole locus, such as that of a border.
     unit : float
-        In which the first parameter is counted among the unknowns.
+        Unit of the first parameter as an unknown.
     own_kind : Kind, optional
-        Of the user's: its condition is followed, computed in Python.
+        A user-defined kind, whose condition is evaluated in Python.
 
     Raises
     ------
     ValueError
-        If the problem has no such parameter, or its kernels cannot be asked for loci.
+        If the problem has no such parameter, has no kernels for loci, or has no locus of this kind.
     """
 
     spectrum = "none"
@@ -160,7 +160,7 @@ class LocusProblem(ProblemDefaults):
             )
         if self.condition == PAIR and problem.n_multipliers < 2:
             raise ValueError("a pair of multipliers needs a problem with at least two of them")
-        # copies: their arrays of parameters are changed in place
+        # copies, since the kernels change their parameters in place
         self.first = problem.against(problem.parameter)
         self.second = self.first.against(over)
         self.parameter = over
@@ -171,7 +171,7 @@ class LocusProblem(ProblemDefaults):
         self.reference = float(reference)
         self.masked = tuple(int(j) for j in masked)
         self.unit = float(unit)
-        # typical sizes of unknowns, both parameters, and equations; workspaces look at these arrays
+        # typical sizes of unknowns, both parameters, and equations; workspaces share these arrays
         self.sizes, self.rows = np.ones(self.size + 3), np.ones(self.size)
         self.borders = fresh_borders(self.size) if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
@@ -190,7 +190,7 @@ class LocusProblem(ProblemDefaults):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
 
     def _own(self, u: np.ndarray, p: float, q: float, work: object, row: np.ndarray) -> float:
-        """The condition of the user's kind at a solution; a workspace and a row are filled."""
+        """Evaluate the condition of a user-defined kind at a solution; `work` and `row` are overwritten."""
         first, kind = self.first, self.own_kind
         assert kind is not None and callable(kind.locus)
         first.kernels.inspect(first.data, u, p, work, row)
@@ -199,17 +199,17 @@ class LocusProblem(ProblemDefaults):
 
     @property
     def tested(self) -> int:
-        """The condition whose test the kernels evaluate."""
+        """Condition whose test the kernels evaluate."""
         return self.condition
 
     def workspace(self) -> Work:
-        """Arrays for the kernels; borders and reference are state that a trace renews."""
+        """Return arrays for the kernels; their borders and reference change along a trace."""
         return Work(self)
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
-        """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
+        """Typical sizes of unknowns, first parameter (and unfolding) and second parameter, shape (dimension + 1,)."""
         scale, width = np.ones(self.dimension + 1), within[1] - within[0]
-        # of the second parameter: what it is at the start, or the interval where that says little
+        # second parameter: its value at the start or, if that is nearly zero, the width of the interval
         start = abs(self.base.parameters[self.over])
         second = min(width, start) if start > SCALING.start * width else width
         if not self.natural:
@@ -219,10 +219,10 @@ class LocusProblem(ProblemDefaults):
                 scales = self.base.scales
             if scales is not None:
                 largest = float(scales.unknowns.max())
-                # an unknown that is zero all along the branch has shown no size of its own
+                # an unknown that is zero along the whole branch gets the largest scale
                 own = np.where(scales.unknowns < SCALING.unseen * largest, largest, scales.unknowns)
                 if self.base.scales_learned:
-                    # a locus goes further: as far as the second parameter alone moves the motion
+                    # the motion changes more along a locus: use the scales of a branch in the second parameter, too
                     moved = self.second.scale_within(within)[:-1]
                     own = np.maximum(own, np.minimum(moved, FURTHER * own))
                 scale[: self.size], scale[self.size] = own, scales.parameter
@@ -233,26 +233,26 @@ class LocusProblem(ProblemDefaults):
         return scale
 
     def sizes_at(self, u: np.ndarray, p: float, q: float) -> np.ndarray:
-        """What changes of (u, p, q) are compared with near a place."""
+        """Return sizes of (u, p, q) near a place, relative to which changes are measured."""
         parameters = self.unit * self.sizes[self.size], self.sizes[self.dimension]
         own = np.append(self.sizes[: self.size], parameters)
         return np.maximum(own, np.abs(np.append(u, [p, q])))
 
-    # ------------------------------------------------------------------ what a solution is
+    # ------------------------------------------------------------------ unknowns and related problems
     def split(self, U: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(u, p) of a solution."""
+        """Split the unknowns of a locus into (u, p)."""
         return np.asarray(U[..., : self.size]), self.unit * U[..., self.size]
 
     def joined(self, u: np.ndarray, p: float) -> np.ndarray:
-        """The unknowns of a special point."""
+        """Join u and p to the unknowns of a locus."""
         return np.concatenate([u, [p / self.unit], np.zeros(self.dimension - self.size - 1)])
 
     def at(self, q: float) -> Problem:
-        """The problem of the branches at a value of the second parameter."""
+        """Return the problem of the branches at a value of the second parameter."""
         return self.base.against(self.inner, {self.over: float(q)})
 
     def again(self, problem: Problem, **changed: Any) -> Self:
-        """The same locus of another problem, with what is `changed` of the arguments that it was made with."""
+        """Return the same locus for another problem, with some of its arguments changed."""
         about = {
             "index": self.index,
             "bounds": self.bounds,
@@ -264,24 +264,24 @@ class LocusProblem(ProblemDefaults):
         return type(self)(problem, self.kind, self.over, **about | changed)
 
     def bordered_at(self, u: np.ndarray, p: float, q: float, reference: float) -> Self:
-        """The same locus, with the borders that belong to one of its points, and the pair at a position there."""
+        """Return the same locus with the borders of one of its points, and a given position of the pair."""
         problem = self.at(q)
         borders = borders_at(problem, self.condition, u, p)
         return self.again(problem, borders=borders, reference=reference)
 
     def margin_kind(self, j: int) -> str:
-        """Kind of the border, "end" where p leaves its interval, "resonance" where a pair becomes real."""
+        """Return the kind of border of margin j: that of the problem, "end" if p leaves its interval, "resonance" if a pair becomes real."""
         own = int(self.base.n_margins)
         if j < own:
             return self.base.margin_kind(j)
         return "resonance" if j == own + 2 else "end"
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period along the locus."""
+        """Return multipliers over the full period from raw ones."""
         return self.base.to_multipliers(spectrum)
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
-        """Of the special point, with its parameter value."""
+        """Return a key and a vector of the special point, with its parameter value."""
         inner, value = self.split(np.asarray(u, dtype=float))
         key, vector = self.base.canonical(inner, float(value))
         which = self.index if self.condition == MARGIN else 0
@@ -289,11 +289,11 @@ class LocusProblem(ProblemDefaults):
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """The first parameter, and the measures of the problem."""
+        """Name of the first parameter, and of the measures of the problem."""
         return (self.inner, *self.base.measure_names)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures of special points along the locus."""
+        """Return the named measures, each of shape (m,), of m points of the locus."""
         inner, values = self.split(np.atleast_2d(u))
         result: dict[str, np.ndarray] = {self.inner: np.array(values)} if self.inner in names else {}
         others = tuple(name for name in names if name != self.inner)
@@ -306,17 +306,17 @@ class LocusProblem(ProblemDefaults):
         return result
 
     def orbit(self, u: np.ndarray, p: float) -> object:
-        """The special solution as the object that the problem hands to users."""
+        """Return the motion at a point of the locus as an orbit object of the problem."""
         inner, value = self.split(u)
         return critical(self.at(p).orbit(inner, float(value)), self.kind)
 
     @property
     def notation(self) -> dict[str, str]:
-        """Labels of axes, as the problem's."""
+        """Axis labels of the problem."""
         return notation_of(self.base)
 
     def describe(self) -> dict[str, Any]:
-        """A description from which `from_description` builds the problem again."""
+        """Return a description from which `from_description` rebuilds the problem."""
         about = dict(self.base.describe())
         rebuilds = about.get("factory") and self.own_kind is None
         return {
@@ -337,7 +337,7 @@ class LocusProblem(ProblemDefaults):
 
     @classmethod
     def rebuilt(cls, description: Mapping[str, Any], trust: bool) -> Self | None:
-        """The locus that `describe` described; None where functions of the user's own are not at hand."""
+        """Rebuild a locus from the result of `describe`; None if the user's functions cannot be found."""
         from ..problems.registry import rebuild
 
         problem, (low, high) = rebuild(description["problem"], trust), description["bounds"]
@@ -351,7 +351,13 @@ class LocusProblem(ProblemDefaults):
 
 
 def check_second(problem: Problem, over: str) -> None:
-    """Refuse what is no second parameter of a problem, in a sentence."""
+    """Check the name of a second parameter.
+
+    Raises
+    ------
+    ValueError
+        If the problem has no such parameter, or it is the varying one.
+    """
     names = list(problem.parameters)
     if over == problem.parameter:
         raise ValueError(
@@ -365,25 +371,25 @@ def check_second(problem: Problem, over: str) -> None:
 
 
 def has_natural_units(problem: Problem) -> bool:
-    """Whether all unknowns of a problem are of order 1 by themselves, so that nothing has to be learned of their sizes."""
+    """Whether all unknowns of a problem are of order 1, so that it needs no scales."""
     return bool(getattr(problem.kernels, "natural", problem.kernels.compiled))
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> LocusProblem | None:
-    """The LocusProblem that `describe` described; None where functions of the user's own are not at hand."""
+    """Rebuild a LocusProblem from the result of `describe`; None if the user's functions cannot be found."""
     return LocusProblem.rebuilt(description, trust)
 
 
 class PointOfLocus:
-    """What functions of users' kinds see of a point along a locus: as :class:`~contvines.bifurcation.kind.PointOnBranch`, without a tangent.
+    """A point of a locus, as the argument of functions of user-defined kinds: like :class:`~contvines.bifurcation.kind.PointOnBranch`, without a tangent.
 
-    ``value`` is the first parameter; ``parameters`` hold both that vary, and ``place`` these two alone, the first one first.
+    ``value`` is the first parameter; ``parameters`` contain all parameters, ``place`` only the two that vary, the first one first.
 
     Parameters
     ----------
     locus : LocusProblem
     there : Problem
-        One whose data are those of the second parameter's value.
+        Problem whose data have the second parameter's value.
     u, p, q
         The point.
     row : ndarray
@@ -400,7 +406,7 @@ class PointOfLocus:
 
     @property
     def problem(self) -> Problem:
-        """That of the branches, at this value of the second parameter."""
+        """Problem of the branches at this value of the second parameter."""
         return self.locus.at(self.place[self.locus.over])
 
     @cached_property
@@ -414,16 +420,16 @@ class PointOfLocus:
 
     @cached_property
     def multipliers(self) -> np.ndarray:
-        """Of the full period (eigenvalues for flows), complex."""
+        """Multipliers over the full period (eigenvalues for flows), complex."""
         pairs = self.row[: 2 * self.locus.n_multipliers]
         return np.asarray(self.locus.to_multipliers(pairs.view(complex)), dtype=complex)
 
     @property
     def margins(self) -> np.ndarray:
-        """Distances from borders."""
+        """Margins: distances from borders, positive inside."""
         return self.row[2 * self.locus.n_multipliers :]
 
     def measure(self, name: str) -> float:
-        """A measure of the solution by its name."""
+        """Return a measure of the solution by its name."""
         found = self.problem.measures((name,), self.u[None, :], np.array([self.value]))
         return float(found[name][0])

@@ -1,4 +1,4 @@
-"""Regions: the parts into which loci cut the plane of two parameters, and what is stable in each."""
+"""Regions: the parts into which loci divide the plane of two parameters, and the stable motions in each."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
 
-CELLS = 360  # of the raster, each way
-SMALLEST = 60  # cells; smaller regions are slivers between loci
-FEWEST, MOST = 2, 5  # places of a region
-PER_PLACE = 0.05  # of the plane: so much more asks for one more
-INNER = 0.3  # of the largest distance from the loci, at least, is that of every place
+CELLS = 360  # cells of the raster along each side
+SMALLEST = 60  # fewest cells of a region; smaller ones are slivers between loci
+FEWEST, MOST = 2, 5  # fewest and most places of a region that are simulated
+PER_PLACE = 0.05  # share of the plane for each further place
+INNER = 0.3  # smallest distance of a place from the loci, relative to the largest one in its region
 
 
 @dataclass(eq=False)
@@ -36,15 +36,15 @@ class Region:
     Attributes
     ----------
     at : (float, float)
-        (p, q) of a point well inside, where the motions were simulated.
+        (p, q) of the main place, well inside the region, at which motions were simulated.
     share : float
-        Part of the plane that it takes.
+        Part of the plane that the region covers.
     attractors : list of dict
-        What simulation found there: "word", "periods" and "kind" of each motion; of a modulated one "modulation" and its band, too.
+        Stable motions at the main place: "word", "periods" and "kind"; for a modulated motion also "modulation" and its band.
     elsewhere : list of dict
-        Further places of the region, far from one another: "at" and "attractors" of each.
+        Further places of the region, far from one another, with "at" and "attractors".
     cells : ndarray of bool
-        Its cells in a raster of the plane; rows are values of p, columns of q.
+        Its cells in a raster of the plane; rows are values of p, columns values of q.
     """
 
     at: tuple[float, float]
@@ -55,17 +55,19 @@ class Region:
 
     @property
     def words(self) -> list[str]:
-        """The words of the motions that are stable at the middle place; "chaotic", "modulated" and the like where there is no word."""
+        """Words of the stable motions at the main place; "chaotic", "modulated" and so on for motions without a word."""
         return words_of(self.attractors)
 
     @property
     def others(self) -> list[tuple[tuple[float, float], list[str]]]:
-        """The places at which other motions are stable than at the middle one, and their words: something that no locus shows happens between."""
-        told = [((place["at"][0], place["at"][1]), words_of(place["attractors"])) for place in self.elsewhere]
-        return [(at, words) for at, words in told if sorted(words) != sorted(self.words)]
+        """Places with other stable motions than at the main place, and their words; between them there is a change that no locus of the chart shows."""
+        places = [
+            ((place["at"][0], place["at"][1]), words_of(place["attractors"])) for place in self.elsewhere
+        ]
+        return [(at, words) for at, words in places if sorted(words) != sorted(self.words)]
 
     def to_dict(self, parameters: tuple[str, str]) -> dict[str, Any]:
-        """The entry of this region in the JSON of a chart."""
+        """Return the entry of this region in the JSON of a chart."""
         return {
             "at": dict(zip(parameters, map(float, self.at))),
             "share": float(self.share),
@@ -84,7 +86,7 @@ class Region:
 
 
 def words_of(attractors: list[dict[str, Any]]) -> list[str]:
-    """Names of attractors, with their number where several have the same one."""
+    """Return the names of attractors, with a number if several have the same name."""
     names = [name_of(found) for found in attractors]
     return [
         name if names.count(name) == 1 else f"{names.count(name)} x {name}" for name in dict.fromkeys(names)
@@ -92,7 +94,7 @@ def words_of(attractors: list[dict[str, Any]]) -> list[str]:
 
 
 def name_of(found: dict[str, Any]) -> str:
-    """The word of an attractor, with its periods where they are more than one; its modulation or its kind where it has no word."""
+    """Return the word of an attractor, with the number of periods if it is more than one; without a word, its modulation or kind."""
     if modulation := found.get("modulation"):
         return str(modulation)
     word, periods = found.get("word"), int(found.get("periods") or 0)
@@ -106,7 +108,7 @@ def name_of(found: dict[str, Any]) -> str:
 def divide(
     curves: Iterable[np.ndarray], within: tuple[tuple[float, float], tuple[float, float]]
 ) -> list[Region]:
-    """The regions between curves, largest first, without what is stable there.
+    """Compute the regions between curves, largest first, with places but without attractors.
 
     Parameters
     ----------
@@ -146,7 +148,7 @@ def divide(
 
 
 def _places(depth: np.ndarray, share: float) -> np.ndarray:
-    """Cells of a region, shape (n, 2): the one farthest from its edges, then those farthest from the ones before and not near an edge."""
+    """Places of a region as cells, shape (n, 2): first the cell farthest from the edges, then each time the one farthest from the others and not near an edge."""
     count = int(np.clip(FEWEST + share / PER_PLACE, FEWEST, MOST))
     inner = np.argwhere(depth >= max(INNER * depth.max(), 1.0))
     chosen = [np.array(np.unravel_index(int(np.argmax(depth)), depth.shape))]
@@ -159,12 +161,12 @@ def _places(depth: np.ndarray, share: float) -> np.ndarray:
     return np.array(chosen)
 
 
-STEPS = (1, 6, 24)  # on the way to the place
-NEAREST = 3  # starts of one word that are tried
+STEPS = (1, 6, 24)  # numbers of steps from a start to a place that are tried in turn
+NEAREST = 3  # most starts of one word that are tried
 
 
 class Start(NamedTuple):
-    """A motion at (p, q), and the key of its word."""
+    """A motion at (p, q), and a key for its word."""
 
     problem: Problem
     u: np.ndarray
@@ -174,17 +176,17 @@ class Start(NamedTuple):
 
 
 class KnownMotions:
-    """Stable motions of a graph and regular ones on loci, as starts.
+    """Known motions, from which the stable motions at other parameter values are continued: those of stable branches, and of loci without folds.
 
     Parameters
     ----------
     branches : iterable of Branch
-        At one value of the second parameter.
+        Branches at one value of the second parameter.
     loci : iterable of Locus
     over : str
-        The second parameter.
+        Name of the second parameter.
     within : (interval, interval)
-        Of both parameters.
+        Intervals of the two parameters.
     """
 
     def __init__(
@@ -220,7 +222,7 @@ class KnownMotions:
         return found
 
     def at(self, place: tuple[float, float]) -> list[dict[str, Any]]:
-        """The motions that are stable at (p, q), each word once."""
+        """Return the stable motions at (p, q), each word once, as entries of `simulated_attractors`."""
         (plow, phigh), (qlow, qhigh) = self.within
         found: dict[str, dict[str, Any]] = {}
         tried: dict[str, int] = {}
@@ -257,7 +259,7 @@ class KnownMotions:
         return None
 
     def _holds(self, problem: Problem, u: np.ndarray, p: float) -> bool:
-        """Whether what a motion only repeats is one: a cycle whose period has gone to zero stays at a state where nothing need rest."""
+        """Whether the shorter motion that a motion repeats is a solution, and stable: a cycle whose period tends to zero stays at a state that need not be an equilibrium."""
         engine = Engine(problem, self.within[0], Settings())
         solved = engine.at_value(u, p)
         if solved is None or not _counts(engine, solved):
@@ -266,7 +268,7 @@ class KnownMotions:
         return bool((far <= VANISHING.loose * np.maximum(np.abs(u), engine.scale[:-1])).all())
 
     def _followed(self, start: Start, place: tuple[float, float], steps: int) -> tuple[Engine, Solved] | None:
-        """The motion of a start carried in so many equal steps to a place."""
+        """Continue the motion of a start to a place in equal steps; None if Newton's method fails."""
         wide, reached, u = self.within[0][1] - self.within[0][0], None, start.u
         for share in np.arange(1, steps + 1) / steps:
             p = start.p + share * (place[0] - start.p)
@@ -285,15 +287,15 @@ def _counts(engine: Engine, solved: Solved) -> bool:
 
 
 def _can_be_listed(problem: Problem) -> bool:
-    """Whether a solution can be listed as `simulated_attractors` lists it; one without events is seen by any simulation."""
+    """Whether a solution can be an entry of `simulated_attractors`; motions without events are left out, since every simulation finds them."""
     about = problem.describe()
     return isinstance(problem, Attracting) and about.get("word") != ""
 
 
 def _key(problem: Problem, label: str) -> str:
-    """Equal for motions of one word; of what has no words every branch is tried."""
+    """Key that is equal for motions of one word; for motions without words it is the label of the branch."""
     about = problem.describe()
-    if "word" not in about or "flow" in about:  # words of flows say "cycle" alone
+    if "word" not in about or "flow" in about:  # all cycles of flows have the word "cycle"
         return label
     return f"{about.get('word')} {about.get('periods')} {bool(about.get('symmetric'))}"
 
@@ -301,7 +303,7 @@ def _key(problem: Problem, label: str) -> str:
 def together(
     simulated: list[dict[str, Any]], known: list[dict[str, Any]], size: float = 0.0
 ) -> list[dict[str, Any]]:
-    """What simulation found, and what it missed of the known ones; `size` is that of the unknowns, beside which rounding is zero."""
+    """Return the simulated motions, and the known ones that the simulation has missed; `size` is a typical size of the unknowns."""
     result = list(simulated)
     for one in known:
         if not any(_one(one, other, size) for other in result):

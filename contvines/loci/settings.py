@@ -1,4 +1,4 @@
-"""Tolerances of loci and charts that nobody sets, by subject; those that users set are :class:`contvines.Settings`."""
+"""Fixed tolerances of loci and charts, by subject; user settings are in :class:`contvines.Settings`."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Places:
-    """Places in the plane of two parameters, in parts of its sides or relative to the parameters.
+    """Distances in the plane of two parameters, relative to its sides or to the parameters.
 
     Attributes
     ----------
     same : float
-        Distance of two solved places up to which they are one.
+        Largest distance of two solved points that are equal.
     end : float
-        Distance from the end of a locus, or from a point on both of two loci, at which a place that was met otherwise is that one.
+        Largest distance of a less accurate point from the end of a locus, or from a common point of two loci, that is equal to it.
     """
 
     same: float = 1e-7
@@ -23,28 +23,28 @@ class Places:
 
 @dataclass(frozen=True)
 class Vanishing:
-    """When a number at a solution is zero.
+    """Tolerances below which a number at a solution counts as zero.
 
     Attributes
     ----------
     margin : float
-        Margins, angles and parts of the interval below this vanish; along the locus of a border all of them do.
+        For margins, angles, and distances from the ends of an interval relative to its width.
     singular : float
-        A test, or the unfolding of a branch point, below this (in units of the equations): these are singular, and their solutions known to
-        half the digits.
+        For tests, or the unfolding of a branch point (in units of the equations): below it the equations count as singular, and their solutions
+        have half of the digits.
     critical : float
-        Distance of a multiplier from the boundary, or of a pair from the real axis, at which it is there.
+        For the distance of a multiplier from the stability boundary, or of a pair from the real axis.
     double : float
-        The same of a double multiplier, which is known to half of the digits.
+        The same for a double multiplier, which has half of the digits.
     zero : float
-        A test that is less than this part of its terms, or of what it is at the ends of its segment, is zero.
+        For a test, relative to its terms or to its values at the ends of the segment.
     nothing : float
-        A test that is less at both ends of a segment is zero all along, but for rounding.
+        A test that is smaller than this at both ends of a segment is zero along the whole segment, apart from rounding.
     beside, straight : float
-        Distance from a border (in the metric) at which it is seen how its margins pass zero, and part of their changes on both sides by which those
-        of one that passes it smoothly may differ.
+        Distance from a border (in the metric) at which the margins on both sides are compared, and the largest relative difference of the two changes
+        of a margin that passes zero smoothly.
     image, loose : float
-        Relative distance of a motion from its image under a symmetry up to which it is its own; of one on a mesh, or from one that was simulated.
+        Largest relative distance of a symmetric motion from its image; the same for a motion on a mesh, or compared with a simulation.
     """
 
     margin: float = 1e-8
@@ -61,18 +61,18 @@ class Vanishing:
 
 @dataclass(frozen=True)
 class Scaling:
-    """Sizes of unknowns and parameters, and differences relative to them.
+    """Step sizes of differences and limits of typical sizes, all relative.
 
     Attributes
     ----------
     step : float
-        Of differences of tests along a locus, and distance within which slopes are not worked out again; native/loci.hpp has the same.
+        Step of the differences of tests along a locus, and distance within which slopes are reused; equal to that of native/loci.hpp.
     widest : float
         Largest step of the differences of a margin at a degenerate border.
     start : float
-        Part of its interval: a second parameter that starts closer to zero says nothing of its size.
+        The start of the second parameter is used as its typical size only if it is larger than this part of the interval.
     unseen : float
-        Typical sizes below this part of the largest one are those of zeros.
+        Typical sizes below this part of the largest one belong to unknowns that are zero.
     """
 
     step: float = 1e-7

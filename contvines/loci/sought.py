@@ -1,4 +1,4 @@
-"""What is looked for along a locus: points of codimension two, each the zero of a test in the plane of two parameters."""
+"""Kinds of points of codimension two that are searched along a locus, each the zero of a test function."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ TOUCHING = "degenerate-border"  # its test is the derivative of the margin along
 
 
 class References:
-    """Borders and positions that belong to one point of a locus, held fixed while tests are compared and solved.
+    """Null vectors and positions of pairs at one point of a locus; they are held fixed on the following segment, so that tests are smooth.
 
     Parameters
     ----------
     plane : Plane
-        At the point.
+        The plane at the point.
     near : References, optional
-        Of a neighbour.
+        References of a neighbouring point.
     """
 
     def __init__(self, plane: Plane, near: References | None = None) -> None:
         problem = plane.problem
         self.plus: Null = plane.null_vectors(near=None if near is None else near.plus)
-        # without a flip the unknowns hold no perturbations that could change sign over the period
+        # without a flip kernel there are no perturbations that change sign over the period
         flips = problem.spectrum == "map" and not problem.movable and problem.kernels.flip is not None
         before = None if near is None else near.minus
         self.minus: Null | None = plane.null_vectors(True, before) if flips else None
@@ -52,19 +52,19 @@ Test = Callable[[Plane, References], float]
 
 
 class Sought(NamedTuple):
-    """A kind of point that is looked for along a locus.
+    """A kind of point that is searched along a locus.
 
     Attributes
     ----------
     kind : str
     test : callable
-        (plane, references) -> number, at the place of the plane; NaN where it cannot be told.
+        (plane, references) -> number at the current place of the plane; NaN if it cannot be computed.
     verify : callable
-        Whether a zero, at which a plane is, is of this kind.
+        (plane) -> whether a zero at the current place is of this kind.
     rough : callable or None
-        The test to a few digits, where the test itself is costly.
+        The test to a few digits, if the test itself is expensive.
     zero : float
-        What counts as zero at an end of the locus, where the test may vanish without a change of its sign.
+        Tolerance of zeros at the ends of the locus, where the test may vanish without a change of sign.
     """
 
     kind: str
@@ -75,7 +75,7 @@ class Sought(NamedTuple):
 
 
 def sought(locus: LocusProblem, kinds: Sequence[Kind] = ()) -> Iterator[Sought]:
-    """All that is looked for along a locus; of the condition of a user's kind nothing is known, but users' tests are asked."""
+    """Generate all kinds that are searched along a locus; along a locus of a user-defined kind only users' tests."""
     if locus.condition != OWN:
         yield from _multipliers(locus)
         yield from borders(locus)
@@ -84,7 +84,7 @@ def sought(locus: LocusProblem, kinds: Sequence[Kind] = ()) -> Iterator[Sought]:
 
 
 def _multipliers(locus: LocusProblem) -> Iterator[Sought]:
-    """Where the normal form degenerates, or one more multiplier is critical; at no border but that of the locus itself."""
+    """Generate points at which the normal form degenerates, or at which a further multiplier is critical."""
     problem, condition, m = locus.base, locus.condition, locus.n_multipliers
     half, flow = problem.flip_kind == "symmetry-breaking", problem.spectrum == "flow"
     turn = "symmetry-breaking" if half else "flip"
@@ -133,7 +133,7 @@ def _multipliers(locus: LocusProblem) -> Iterator[Sought]:
 
 
 def _resonances(half: bool) -> list[tuple[str, float]]:
-    """Strong resonances by the cosine of the raw angle; on half maps the multipliers of the full period are squares."""
+    """Kinds of strong resonances and the cosines of their raw angles; for half-period maps the multipliers of the full period are the squares."""
     root = 0.5**0.5
     cosines = (
         ((1.0, -1.0), (0.0,), (0.5, -0.5), (root, -root)) if half else ((1.0,), (-1.0,), (-0.5,), (0.0,))
@@ -142,7 +142,7 @@ def _resonances(half: bool) -> list[tuple[str, float]]:
 
 
 def borders(locus: LocusProblem) -> Iterator[Sought]:
-    """Where one more margin vanishes."""
+    """Generate points at which a further margin vanishes."""
     kind = {FLIP: "border-flip", PAIR: "border-neimark-sacker", MARGIN: "double-border"}.get(
         locus.condition, "border-fold"
     )
@@ -152,8 +152,8 @@ def borders(locus: LocusProblem) -> Iterator[Sought]:
         yield Sought(kind, partial(_margin, j), partial(holds, kind), zero=VANISHING.margin)
 
 
-# ------------------------------------------------------------------ whether a zero is of its kind
-#: kind -> critical pairs of multipliers
+# ------------------------------------------------------------------ verification of zeros
+#: kind -> number of critical pairs of multipliers
 PAIRS = {
     "zero-hopf": 1,
     "fold-neimark-sacker": 1,
@@ -166,7 +166,7 @@ PAIRS = {
 
 
 def holds(kind: str, plane: Plane) -> bool:
-    """Whether the multipliers at a solution are those that the name of the point says."""
+    """Whether the multipliers at the current place are those of the kind."""
     spectrum = plane.spectrum
     if not plane.m:
         return True
@@ -185,11 +185,12 @@ def holds(kind: str, plane: Plane) -> bool:
 
 
 def _inside(kind: str, plane: Plane) -> bool:
+    """Whether the multipliers are those of the kind, and no margin vanishes except that of the locus."""
     return holds(kind, plane) and vanishing_margins(plane) <= set(plane.locus.masked)
 
 
 def vanishing_margins(plane: Plane) -> set[int]:
-    """Places of the margins that are zero."""
+    """Return the indices of the margins that vanish at the current place."""
     return set(np.flatnonzero(np.abs(plane.margins) < VANISHING.margin).tolist())
 
 
@@ -211,12 +212,12 @@ def _margin(j: int, plane: Plane, at: References) -> float:
 
 
 def _plus(plane: Plane, at: References) -> float:
-    """g of F_u with given borders."""
+    """g of F_u: zero if a multiplier is 1 (an eigenvalue 0)."""
     return plane.null(at.plus.column, at.plus.row)[1]
 
 
 def _minus(plane: Plane, at: References) -> float:
-    """g of the flipped F_u."""
+    """g of the flipped F_u: zero if a multiplier is -1."""
     if at.minus is None:
         return np.nan
     with plane.flipped():
@@ -236,7 +237,7 @@ def _angle(cosine: float, plane: Plane, at: References) -> float:
 
 
 def _double(value: float, plane: Plane, at: References) -> float:
-    """Sum of the two multipliers nearest to a place of the real axis, less twice that place."""
+    """Sum of the two multipliers nearest to a real value, minus twice that value."""
     spectrum = plane.spectrum
     nearest = spectrum[np.argsort(np.abs(spectrum - value), kind="stable")[:2]]
     return float(np.real(np.sum(nearest)) - 2.0 * value)
@@ -246,9 +247,9 @@ def _touch(plane: Plane, at: References) -> float:
     return plane.slope_along_branch(at.plus)
 
 
-# ------------------------------------------------------------------ tests that are coefficients of normal forms
+# ------------------------------------------------------------------ tests by normal form coefficients
 class NormalForm(Protocol):
-    """The coefficient of a normal form at the place of a plane, to a few digits with `rough`; NaN where it is not known."""
+    """Coefficient of a normal form at the current place of a plane, to a few digits with `rough`; NaN if it is unknown."""
 
     def __call__(self, plane: Plane, at: References, rough: bool = False) -> Coefficient: ...
 
@@ -258,19 +259,19 @@ def _exact(form: NormalForm, plane: Plane, at: References) -> float:
 
 
 def _few_digits(form: NormalForm, plane: Plane, at: References) -> float:
-    """A coefficient; where its terms cancel it is zero, not the rounding that is left of them."""
+    """A coefficient to a few digits; zero if its terms cancel up to rounding."""
     found = form(plane, at, rough=True)
     return 0.0 if abs(found.value) <= VANISHING.zero * found.size else found.value
 
 
 def _quadratic(plane: Plane, at: References, rough: bool = False) -> Coefficient:
-    """The quadratic coefficient of a fold, along the null vector that goes with the reference."""
+    """The quadratic coefficient of a fold, with the null vector oriented by the reference."""
     v, _ = plane.null(at.plus.column, at.plus.row)
     if isinstance(plane.problem, Adaptive):
         return _of_cycle(plane, "fold", along=v)
     found = _forms(plane, rough).quadratic(v)
     if found.error <= NORMAL_FORMS.unsure * found.size or (rough and found.error < abs(found.value)):
-        return found  # of a rough one the sign is enough
+        return found  # with `rough` a certain sign is enough
     return _quadratic(plane, at) if rough else UNKNOWN
 
 
@@ -302,7 +303,7 @@ def _forms(plane: Plane, rough: bool) -> Forms:
 def _of_cycle(
     plane: Plane, kind: str, multiplier: complex = -1.0, along: np.ndarray | None = None
 ) -> Coefficient:
-    """The form of a cycle from the equations on its mesh, which cost less than its return map."""
+    """Normal form coefficient of a cycle from its collocation equations, which are cheaper than its return map."""
     u, p, q = plane.place
     found = on_mesh(plane.locus.at(q)).normal_form(kind, u, p, multiplier, along)
     return UNKNOWN if found is None else Coefficient(found[0], 0.0, found[1])

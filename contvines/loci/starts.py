@@ -1,6 +1,6 @@
-"""From a special point to the problem of its locus and a first point on it.
+"""Starts of loci: from a special point to the problem of its locus and the first point on it.
 
-Homoclinic orbits are followed as cycles of a long period, which may be another one than that at the end of a branch.
+Homoclinic orbits are represented by cycles of a long, fixed period, which may differ from the period at the end of the branch.
 """
 
 from __future__ import annotations
@@ -27,16 +27,17 @@ from .linear import Linearisation, borders_at, singularity
 from .problem import LocusProblem, check_second, has_natural_units
 from .settings import VANISHING
 
-PLAIN = 16.0  # parameters up to this size, and down to its inverse, are counted as they are
-LONGER = 1.3  # factor from one period to the next, on the way to a longer one
-LEFT = 0.1  # part of its time that an interval beside a saddle keeps at least, on the way to a shorter period
+PLAIN = 16.0  # a parameter whose size is between 1 / PLAIN and PLAIN has the unit 1
+LONGER = 1.3  # largest ratio of successive periods on the way to a given one
+# smallest part of its duration that a mesh interval near a saddle keeps when the period is reduced
+LEFT = 0.1
 
 Cycle = tuple[CycleProblem, np.ndarray, float]
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A special point at (p, q) from which a locus may be traced; ``index`` is that of the margin at a border, ``seed`` the label of its origin."""
+    """A special point at (p, q) from which a locus may be traced; ``index`` is the margin's index at a border, ``seed`` the label of the point of origin."""
 
     problem: Problem
     kind: str
@@ -49,12 +50,12 @@ class Candidate:
 
 
 def check_start(point: SpecialPoint, over: str, within: tuple[float, float]) -> None:
-    """Refuse a special point without a problem, and a second parameter or an interval of it that will not do.
+    """Check that a locus can start at a special point, with this second parameter and interval.
 
     Raises
     ------
     ValueError
-        The sentence says why.
+        If the point has no problem, the parameter does not exist, or the interval does not contain the diagram's value or has impossible values.
     """
     if point.problem is None:
         raise ValueError(without_problem(point.label))
@@ -72,22 +73,22 @@ def check_start(point: SpecialPoint, over: str, within: tuple[float, float]) -> 
 def candidate_of(
     point: SpecialPoint, over: str, kinds: Iterable[Kind] = (), suited: bool = True
 ) -> Candidate:
-    """A special point of a diagram as its locus begins.
+    """Return a special point of a diagram as the start of its locus.
 
     Parameters
     ----------
     point : SpecialPoint
     over : str
-        The second parameter.
+        Name of the second parameter.
     kinds : iterable of Kind
-        Of the user's: that of a point from a file is among them.
+        User-defined kinds; a point of a user-defined kind from a file needs its kind here.
     suited : bool
-        Give the cycle at a homoclinic end the period that suits its locus.
+        Replace the cycle at a homoclinic end by one whose period is suitable for the locus.
 
     Raises
     ------
     ValueError
-        If the point is of a user's kind that cannot be followed.
+        If the point is of a user-defined kind without a condition.
     """
     kind = condition_of(point, kinds) if of_own_kind(point) else None
     point = regular_side(point) if kind is None else point
@@ -98,15 +99,15 @@ def candidate_of(
 
 
 def begin(start: Candidate, over: str, bounds: tuple[float, float] = (-np.inf, np.inf)) -> LocusProblem:
-    """The problem of the locus through a special point, with borders and the pair that belong to that point.
+    """Return the problem of the locus through a special point, with the borders and the reference pair of that point.
 
     Parameters
     ----------
     start : Candidate
     over : str
-        The second parameter.
+        Name of the second parameter.
     bounds : (float, float)
-        Of the first parameter.
+        Interval of the first parameter.
     """
     problem, u, p, index = start.problem, start.u, start.p, start.index
     wanted = condition(problem, start.kind) if start.own_kind is None else OWN
@@ -123,7 +124,7 @@ def begin(start: Candidate, over: str, bounds: tuple[float, float] = (-np.inf, n
     )
     locus.borders = borders_at(problem, wanted, u, p)
     if wanted == PERIOD:
-        # not where an equilibrium is about to appear on the cycle
+        # the distance from an equilibrium is a margin only if the cycle is near one; before a saddle-node on the cycle there is none yet
         near = on_mesh(problem).from_rest(u, p) < 0.1 * APART
         locus.masked = (1,) if near else (0, 1)
     if wanted == MARGIN:
@@ -138,7 +139,7 @@ def begin(start: Candidate, over: str, bounds: tuple[float, float] = (-np.inf, n
 def first_point(
     locus: LocusProblem, u: np.ndarray, p: float, q: float, within: tuple[float, float], settings: Settings
 ) -> tuple[Engine, Solved | None]:
-    """An engine for the locus and the solved special point; None if it does not converge or is another one."""
+    """Return an engine for the locus, and its first point; None if Newton's method fails or converges to another point."""
     engine = Engine(locus, within, settings)
     U = locus.joined(u, p)
     found = engine.start(U, float(q))
@@ -150,10 +151,10 @@ def first_point(
 
 
 def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
-    """Of the margins that vanish at a border the one that passes zero most smoothly, to follow along a locus.
+    """Return the index of the margin that passes zero most smoothly, of all that vanish at a border, as the condition of the locus.
 
-    Some jump there, as the time to a slip where a stick vanishes; others only touch zero, as the distance kept from a wall where an impact on it
-    has lost its speed.
+    Some margins jump at a border (the time to a slip where a stick vanishes), others only touch zero (the distance from a wall where the speed of an
+    impact on it vanishes).
     """
     engine = _about(problem, p)
     here = engine.start(u, p)
@@ -165,7 +166,8 @@ def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
         return index
     with np.errstate(invalid="ignore"):
         rises = np.array(margins[1:]) - margins[0]
-        bent = np.abs(rises.sum(axis=0)) / np.abs(rises).sum(axis=0)  # 0 of a straight line, 1 of a touch
+        # 0: passes zero linearly, 1: touches zero
+        bent = np.abs(rises.sum(axis=0)) / np.abs(rises).sum(axis=0)
     smooth = (np.abs(margins[0]) < VANISHING.margin) & (bent <= VANISHING.straight)
     if bent[index] <= VANISHING.straight or not smooth.any():
         return index
@@ -173,25 +175,27 @@ def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
 
 
 def _about(problem: Problem, p: float) -> Engine:
-    """An engine for single solutions near a value of the parameter."""
+    """Return an engine for single solutions near a value of the parameter."""
     wide = 1.0 + abs(p)
     return Engine(problem, (p - wide, p + wide), Settings())
 
 
 def unit_of(problem: Problem, bounds: tuple[float, float], p: float) -> float:
-    """The unit of the first parameter as an unknown among those of a machine: 1, or a power of two where it is of another order."""
+    """Return the unit of the first parameter as an unknown: 1, or a power of two if the parameter is much larger or smaller than the other unknowns."""
     if not has_natural_units(problem):
-        return 1.0  # all unknowns have scales of their own
+        return 1.0  # the problem has scales
     size = max(map(abs, bounds)) if np.isfinite(bounds).all() else abs(p)
     return 1.0 if size == 0.0 or 1.0 / PLAIN <= size <= PLAIN else 2.0 ** round(np.log2(size))
 
 
 def regular_side(point: SpecialPoint) -> SpecialPoint:
-    """A border as the motion on its other side has it, where its own equations are singular, a doubling that was met from the side of the doubled
-    motion as the one that doubles has it, and a Hopf point met by cycles as the equilibrium has it; else the point itself.
+    """Return a special point as a point of the motion whose equations are regular there, if it was found on the other motion:
 
-    A stick that shrinks to nothing leaves two events at one place, and equations that are singular all along the border. The motion behind it has
-    no such stick, and grazes there.
+    - a period doubling, or a Hopf point, that was found on the doubled motion, or on the cycles: of the motion that doubles, or of the equilibrium;
+    - a border at which the equations are singular: of the motion on the other side. (When a stick shrinks to zero duration, two events coincide and the
+      equations are singular along the whole border. The motion on the other side has no stick, and grazes there.)
+
+    Otherwise the point itself.
     """
     problem, p = point.attached, float(point.value)
     wanted = condition(problem, point.kind)
@@ -212,19 +216,19 @@ def regular_side(point: SpecialPoint) -> SpecialPoint:
     return point
 
 
-# ------------------------------------------------------------------ users' kinds
+# ------------------------------------------------------------------ user-defined kinds
 def of_own_kind(point: SpecialPoint) -> bool:
-    """Whether a special point is of a kind of the user's own; a problem's own borders are not."""
+    """Whether a special point is of a user-defined kind (borders of a problem are not)."""
     return point.own_kind is not None or (point.kind not in BY_NAME and point.margin_index is None)
 
 
 def condition_of(point: SpecialPoint, kinds: Iterable[Kind]) -> Kind:
-    """The kind of a point of a user's kind: its own, or, of a point from a file, the one of this name.
+    """Return the user-defined kind of a point: the point's own or, for a point from a file, the one of the same name in `kinds`.
 
     Raises
     ------
     ValueError
-        If it brings no condition.
+        If there is none, or if it has no condition.
     """
     kind = point.own_kind or next((kind for kind in kinds if kind.name == point.kind), None)
     if kind is None:
@@ -239,27 +243,25 @@ def condition_of(point: SpecialPoint, kinds: Iterable[Kind]) -> Kind:
     return kind
 
 
-# ------------------------------------------------------------------ cycles that stand for homoclinic orbits
+# ------------------------------------------------------------------ cycles that represent homoclinic orbits
 def with_period(start: Candidate, period: float) -> Candidate:
-    """A homoclinic end with another period; ValueErrors as of `lengthened`."""
+    """Return a homoclinic end with another period; it raises the errors of `lengthened`."""
     problem, u, p = lengthened(on_mesh(start.problem), start.u, start.p, period)
     return replace(start, problem=problem, u=u, p=p)
 
 
 def lengthened(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> Cycle:
-    """A nearly homoclinic cycle with another period.
-
-    Where it is longer the cycle waits at its slowest point.
+    """Return a nearly homoclinic cycle with another period, by steps in the period; the additional time is spent near the saddles.
 
     Raises
     ------
     ValueError
-        If the period is not positive, or no such cycle is found.
+        If the period is not positive, or no cycle of that period is found.
     """
     if not period > 0.0:
         raise ValueError(f"period = {period!r} must be positive")
     wanted = float(u[problem.period_place])
-    while wanted != period:  # what is found has the wanted period but for rounding
+    while wanted != period:  # compare requested periods: a solved period has rounding errors
         wanted = min(max(period, wanted / LONGER), wanted * LONGER)
         found = of_period(problem, _waiting(problem, u, p, wanted), p, wanted)
         if found is None:
@@ -271,7 +273,7 @@ def lengthened(problem: CycleProblem, u: np.ndarray, p: float, period: float) ->
 
 
 def of_period(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> Cycle | None:
-    """The cycle of a given period near a guess, on a mesh that suits it."""
+    """Solve for the cycle of a given period near a guess, with adaptation of the mesh; None if Newton's method fails."""
     while True:
         found = _with_period(problem, u, p, period)
         if found is None:
@@ -286,17 +288,17 @@ def of_period(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> 
 
 
 def _with_period(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> Solved | None:
-    """The cycle of a given period near a guess, on its mesh."""
+    """Solve for the cycle of a given period near a guess on its mesh; None if Newton's method fails."""
     border = np.zeros(problem.dimension + 1)
     border[problem.period_place] = 1.0
     return _about(problem, p).solve(u, p, border, period)
 
 
 def with_suited_period(start: Candidate, point: SpecialPoint) -> Candidate:
-    """A homoclinic end as its locus begins, with a shorter period where there are several saddles.
+    """Return a homoclinic end with a period suitable for its locus: a shorter one if there are several saddles.
 
-    One parameter brings a cycle as near to one saddle as is wanted. To several of them it comes no nearer than the error of its mesh is, and with a
-    longer period no cycle is found further on.
+    One parameter is enough to bring a cycle arbitrarily near to one saddle. It comes no nearer to several saddles than the error of its mesh, and with a
+    longer period the locus could not be continued.
     """
     problem = on_mesh(start.problem)
     limit = infinite_period(problem, point)
@@ -311,7 +313,7 @@ def with_suited_period(start: Candidate, point: SpecialPoint) -> Candidate:
 
 
 def limit_of(problem: CycleProblem, u: np.ndarray, p: float) -> InfinitePeriod | None:
-    """What a cycle of a long period becomes as it grows without bound; None where its branch cannot be followed."""
+    """Return the limit of a cycle of a long period as the period grows without bound; None if the tangent of its branch cannot be computed."""
     found = _with_period(problem, u, p, float(u[problem.period_place]))
     if found is None:
         return None
@@ -320,14 +322,14 @@ def limit_of(problem: CycleProblem, u: np.ndarray, p: float) -> InfinitePeriod |
 
 
 def _waiting(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> np.ndarray:
-    """A guess of a cycle of another period: it waits longer, or less long, at each of its saddles."""
+    """A guess for a cycle of another period: the times near its saddles are changed, in proportion to their shares."""
     limit = limit_of(problem, u, p)
     if limit is None or len(limit.saddles) < 2:
         return problem.waiting(u, p, period)
-    x, now, widths = problem.parts(u, p)
-    times, total = now * widths, sum(saddle.share for saddle in limit.saddles)
+    x, old, widths = problem.parts(u, p)
+    times, total = old * widths, sum(saddle.share for saddle in limit.saddles)
     for saddle in limit.saddles:
-        more = (period - now) * saddle.share / total
+        more = (period - old) * saddle.share / total
         away = np.abs((x[:, 0] - saddle.place) / problem.node_scale).max(axis=1)
         for i in np.argsort(np.maximum(away, np.roll(away, -1))):
             change = max(more, (LEFT - 1.0) * times[i])

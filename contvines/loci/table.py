@@ -1,4 +1,4 @@
-"""A chart as tables: text that fits a terminal, or everything; HTML for notebooks."""
+"""Tables of a chart: complete, fitted to the terminal, or as HTML for notebooks; and a short summary."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 
 def table(chart: Chart, width: int | None = None) -> str:
-    """Loci, points of codimension two and regions, one line each.
+    """Return tables of loci, points of codimension two and regions, one line each.
 
     Parameters
     ----------
     chart : Chart
     width : int, optional
-        Characters to a line; None: as many as it takes.
+        Characters per line; None: unlimited.
     """
     lines = [fitted(title(chart), width) if width else title(chart)]
     for part in _tables(chart):
@@ -40,18 +40,20 @@ def table(chart: Chart, width: int | None = None) -> str:
 
 
 def shown(chart: Chart) -> str:
-    """The same as it fits the terminal, if one shows it."""
+    """Return the tables fitted to the width of the terminal."""
     return table(chart, terminal_width())
 
 
 def page(chart: Chart) -> str:
-    """The same as HTML."""
-    said = [] if chart.message in ("", "finished") else [f"<p>{html.escape(chart.message)}</p>"]
-    return "".join([f"<p>{html.escape(title(chart))}</p>", *(part.html() for part in _tables(chart)), *said])
+    """Return the tables as HTML."""
+    message = [] if chart.message in ("", "finished") else [f"<p>{html.escape(chart.message)}</p>"]
+    return "".join(
+        [f"<p>{html.escape(title(chart))}</p>", *(part.html() for part in _tables(chart)), *message]
+    )
 
 
 def title(chart: Chart) -> str:
-    """What the tables are of, in one line."""
+    """Return the title of the tables: both parameters with their intervals."""
     p, q = chart.parameters
     (plo, phi), (qlo, qhi) = chart.within
     ends = (f"[{plo:.6g}, {phi:.6g}]", f"[{qlo:.6g}, {qhi:.6g}]")
@@ -62,7 +64,7 @@ def title(chart: Chart) -> str:
 
 
 def _figures(chart: Chart) -> list[Callable[[float], str]]:
-    """How values of the two parameters are written."""
+    """Functions that format values of the two parameters."""
     values = [point.value for point in chart.points.values()]
     return [
         figures_in(within, [value[k] for value in values], PLACES.same * (within[1] - within[0]))
@@ -71,7 +73,7 @@ def _figures(chart: Chart) -> list[Callable[[float], str]]:
 
 
 def _tables(chart: Chart) -> list[Table]:
-    """Loci, then points and regions where there are any."""
+    """The tables of loci, points and regions; the last two only if there are any."""
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
     at = _figures(chart)
 
@@ -108,7 +110,7 @@ def _tables(chart: Chart) -> list[Table]:
 
 
 def regions_table(chart: Chart, most: int | None = None) -> Table:
-    """A row per region, the largest first: where it was simulated, its share of the plane, what is stable; with `most` so many of them."""
+    """Return a table with a row for each region, the largest first: place of the simulation, share of the plane, stable motions; at most `most` rows."""
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
     at = _figures(chart)
     rows = [
@@ -126,23 +128,23 @@ def regions_table(chart: Chart, most: int | None = None) -> Table:
 
 
 def _stable(region: Region, at: Sequence[Callable[[float], str]]) -> str:
-    """What is stable in a region; where its places disagree, what is stable elsewhere in it."""
-    told = ", ".join(map(short_word, region.words)) or "-"
+    """The stable motions of a region; if its places disagree, also those at the other places."""
+    text = ", ".join(map(short_word, region.words)) or "-"
     for motion in region.attractors:
         if "modulation" in motion:
             low, mean, high = (figures(motion[name]) for name in BAND)
-            told += f" (per period {low} to {high}, mean {mean})"
+            text += f" (per period {low} to {high}, mean {mean})"
     if not region.others:
-        return told
+        return text
     apart = [
         f"{', '.join(map(short_word, words)) or '-'} at {at[1](place[1])}, {at[0](place[0])}"
         for place, words in region.others
     ]
-    return f"{told}; elsewhere in the region: {'; '.join(apart)}"
+    return f"{text}; elsewhere in the region: {'; '.join(apart)}"
 
 
 def _word(locus: Locus) -> str:
-    """Of the motion; nothing where solutions have no words."""
+    """The word of a locus's motion; empty if solutions have no words."""
     about = locus.branch.description
     return "" if about.get("word") is None else motion_name(about.get("problem", about))
 
@@ -158,17 +160,17 @@ def _notes(point: PlanePoint) -> str:
     return ", ".join([*parts, point.note] if point.note else parts)
 
 
-MOST = 8  # regions
+MOST = 8  # most regions in the summary
 
 
 def chart_summary(chart: Chart, width: int | None = None) -> str:
-    """Loci and points by kind, then the largest regions.
+    """Return a summary: numbers of loci and points by kind, and the largest regions.
 
     Parameters
     ----------
     chart : Chart
     width : int, optional
-        Characters to a line; those of the terminal by default.
+        Characters per line; by default the width of the terminal.
     """
     width = terminal_width() if width is None else width
     number = [figures_in(within) for within in chart.within]

@@ -1,4 +1,4 @@
-"""How the special points of one kind are followed in the plane of two parameters, and how a side of their locus ends."""
+"""Continuation of special points in the plane of two parameters, and the reasons why their loci end."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ from .problem import LocusProblem
 from .settings import VANISHING
 from .starts import Candidate, begin, candidate_of, check_start, first_point, limit_of, with_period
 
-MOST = 20  # borders that are passed on one side
-#: how a side may end where equations become singular
+MOST = 20  # most borders that one side of a locus passes
+#: statuses with which a side may end where the equations become singular
 SINGULAR = (
     Status.STEP_TOO_SMALL,
     Status.NOT_EVALUABLE,
@@ -63,30 +63,30 @@ def locus(
     period: float | None = None,
     kinds: Iterable[Kind] | None = None,
 ) -> Locus:
-    """Follow a special point of any kind in a second parameter.
+    """Continue a special point of any kind in a second parameter.
 
     Parameters
     ----------
     point : SpecialPoint or PlanePoint
-        Fold, symmetry breaking, branch point, period doubling, Neimark-Sacker, Hopf, any border, or a homoclinic end of a branch of
-        cycles of a flow. Of a Bogdanov-Takens point of a flow, on another locus, the homoclinic orbits that begin there are followed.
+        A fold, symmetry breaking, branch point, period doubling, Neimark-Sacker or Hopf point, any border, or a homoclinic end of a branch of
+        cycles of a flow. From a Bogdanov-Takens point of a flow, which lies on another locus, the homoclinic orbits that begin there are continued.
     over : str
         Name of the second parameter.
     within : (float, float)
-        Its interval; it must hold the value at which the diagram was made.
+        Interval of the second parameter; it must contain the value at which the diagram was made.
     bounds : (float, float), optional
-        Interval of the first parameter, at whose ends the locus ends; unbounded if left out.
+        Interval of the first parameter, at whose ends the locus ends; unbounded by default.
     virtual : bool
-        Go on where the motion ceases to exist (such points have ``real`` False).
+        Continue where the motion is not real (``real`` is False at such points).
     settings : Settings or mapping, optional
     progress : callable, optional
         Called with (label, number of points, value of the second parameter).
     period : float, optional
-        Of a homoclinic end: the period of the cycles that stand for the homoclinic orbits along the locus; the one at the end of
-        the branch if it is left out, of a heteroclinic cycle a shorter one, at a Bogdanov-Takens point one that suits the first orbit.
+        For a homoclinic end: period of the cycles that represent the homoclinic orbits along the locus. By default the period at the end of
+        the branch, for a heteroclinic cycle a shorter one, at a Bogdanov-Takens point that of the first orbit.
     kinds : iterable of Kind, optional
-        As in :func:`contvines.diagram`: zeros of the tests of kinds of your own along the locus are among its points, too. A special
-        point of such a kind from a file needs it again.
+        As in :func:`contvines.diagram`: zeros of the tests of user-defined kinds along the locus are among its points, too. A special
+        point of a user-defined kind from a file needs its kind here.
 
     Returns
     -------
@@ -95,7 +95,7 @@ def locus(
     Raises
     ------
     ValueError
-        If the point has no locus, or a parameter or interval will not do; the sentence says why.
+        If the point has no locus, or a parameter or interval is unsuitable.
     """
     if point.kind in ("end", "user"):
         raise ValueError(f"{point.label} is no special point of the motion ({point.kind}); it has no locus")
@@ -128,7 +128,7 @@ def locus(
 
 
 def _beside(point: PlanePoint, over: str, within: Interval, bounds: Interval) -> Candidate:
-    """The homoclinic orbit beside a Bogdanov-Takens point of a flow."""
+    """The homoclinic orbit near a Bogdanov-Takens point of a flow, as a start."""
     if point.problem is None:
         raise ValueError(without_problem(point.label))
     if point.kind != "bogdanov-takens":
@@ -154,7 +154,7 @@ def trace_locus(
     journal: Journal,
     progress: Progress | None,
 ) -> Locus | None:
-    """The locus through a special point, both ways; None if its equations do not converge there.
+    """Trace the locus through a special point in both directions; None if Newton's method fails at its first point.
 
     Parameters
     ----------
@@ -162,8 +162,9 @@ def trace_locus(
     over, within, bounds, settings, virtual, progress
         As for :func:`locus`.
     label : str
-        Of the locus.
+        Label of the locus.
     journal : Journal
+        Recorded points are not computed again.
     """
     problem = begin(start, over, bounds)
     engine, first = first_point(problem, start.u, start.p, start.q, within, settings)
@@ -199,14 +200,14 @@ def trace_locus(
         problem.condition == BRANCH
         and (np.abs(branch.points[:, problem.size + 1]) > VANISHING.singular).any()
     ):
-        return None  # it unfolds
+        return None  # the unfolding is not zero: the branch point does not persist
     turns = tuple(
         Turn(i, (float(problem.split(e.point.u)[1]), float(e.point.p)))
         for i, e in whole.events
         if e.kind == "fold"
     )
     limit = ""
-    if problem.condition == PERIOD:  # what the cycles stand for where their locus begins
+    if problem.condition == PERIOD:  # determine the limit of infinite period at the start of the locus
         u, q, _ = ahead.at(0)
         inner, p = problem.split(u)
         at = limit_of(on_mesh(problem.at(q)), inner, float(p))
@@ -226,7 +227,7 @@ def trace_locus(
 
 
 def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:
-    """Let a locus end at the point of a shorter or more symmetric motion that is its end, or of one that is both."""
+    """Replace the last point of a locus by the point of codimension two of a shorter or more symmetric motion at which it ends; in place."""
     if isinstance(problem.base, Adaptive):
         u = on_mesh(problem.base).resting(problem.split(branch.points[index])[0], end.u)
     else:
@@ -240,26 +241,26 @@ def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoi
 
 
 class BothSides:
-    """The sides of a locus, "ahead" and "back", on meshes that suit both; of a closed one "ahead" alone.
+    """Traces the two sides of a locus, "ahead" and "back", on a common mesh; a closed locus has only the side "ahead".
 
     Parameters
     ----------
     engine : Engine
-        Of the locus, on the mesh on which it begins.
+        Engine of the locus on its first mesh.
     name : str
-        Under which chunks are recorded.
+        Key of the journal's records.
     journal : Journal
     notice : callable
         See :func:`contvines.branches.tracing.trace_half`.
     real : bool
-        Whether the motion exists at the first point.
+        Whether the motion is real at the first point.
     virtual : bool
-        Go on where the motion ceases to exist.
+        Continue where the motion is not real.
 
     Attributes
     ----------
     real : dict of ndarray of bool
-        Of each side, at which of its points the motion exists.
+        For each side, whether the motion is real at its points.
     """
 
     def __init__(
@@ -277,7 +278,7 @@ class BothSides:
         self.real: dict[str, np.ndarray] = {}
 
     def followed(self, start: Solved) -> dict[str, HalfBranch]:
-        """Both sides on one mesh, from a point in the direction of its tangent and backwards."""
+        """Trace both sides from a point, in the direction of its tangent and backwards, on one mesh."""
         return self.meshes.followed(start, self._halves, self.meshes.moved, self.begins_real)[0]
 
     def _detector_of(self, problem: Problem) -> Detector:
@@ -299,41 +300,41 @@ class BothSides:
     def _side(self, detector: Detector, first: Solved, side: str) -> HalfBranch:
         mesh = self.meshes.detectors.index(detector)
         name = f"{self.name}/finer {mesh}/{side}" if mesh else f"{self.name}/{side}"
-        now, half, self.real[side] = self.begins_real, None, np.zeros(0, dtype=bool)
+        real, half, self.real[side] = self.begins_real, None, np.zeros(0, dtype=bool)
         for part in range(MOST):
             more = trace_half(
-                detector, first, self.journal, f"{name}/{part}", now, notice=self.notice, meshes=self.meshes
+                detector, first, self.journal, f"{name}/{part}", real, notice=self.notice, meshes=self.meshes
             )
             new = len(more) - (0 if half is None else 1)
-            self.real[side] = np.append(self.real[side], np.full(new, now))
+            self.real[side] = np.append(self.real[side], np.full(new, real))
             half = more if half is None else self.meshes.read(half, more.detector).extended(more, skip=1)
             border = border_of(more)
             if border is None or not self.virtual:
                 break
             if locus_of(more).margin_kind(border.index) in ("end", "resonance"):
                 break
-            detector, now, first = more.detector, not now, border.point
+            detector, real, first = more.detector, not real, border.point
         assert half is not None
         return half
 
 
-# ------------------------------------------------------------------ how a side ends
+# ------------------------------------------------------------------ ends of a side
 def locus_of(half: HalfBranch) -> LocusProblem:
-    """The problem of a side, on the mesh on which it is."""
+    """Return the problem of a side, on its current mesh."""
     problem = half.engine.problem
     assert isinstance(problem, LocusProblem)
     return problem
 
 
 def border_of(half: HalfBranch) -> Located | None:
-    """The border at which a side ends, if it ends at one."""
+    """Return the border at which a side ends; None if it ends otherwise."""
     last = half.events[-1][1] if half.events and half.status == Status.BORDER else None
     return last if last is not None and last.role is Role.BORDER else None
 
 
 def becoming(half: HalfBranch, within: Interval) -> tuple[str, PlanePoint | None]:
-    """What the motion becomes where its equations become singular, a shorter one run twice, or a symmetric one, and the point of
-    codimension two at which it does; empty where neither."""
+    """Return a sentence and the point of codimension two if a side ends because its motion becomes an equilibrium, a shorter motion run twice, or a
+    symmetric motion; else an empty sentence and None."""
     if half.status not in SINGULAR:
         return "", None
     problem = locus_of(half)
@@ -354,7 +355,7 @@ def becoming(half: HalfBranch, within: Interval) -> tuple[str, PlanePoint | None
 
 
 def sentence(half: HalfBranch) -> str:
-    """Why a side of a locus ends, where the motion becomes no other one."""
+    """Return the sentence why a side of a locus ends, if its motion does not become another one."""
     problem = locus_of(half)
     border = border_of(half)
     if half.events and half.events[-1][1].role is Role.MEETING:
@@ -378,7 +379,7 @@ def sentence(half: HalfBranch) -> str:
 
 
 def _place(half: HalfBranch, p: float, q: float, digits: int = 10) -> str:
-    """Both parameters; what is rounding beside their largest values along the locus is 0."""
+    """Text of both parameters; values at the level of rounding, compared with their largest values along the locus, are 0."""
     problem, whole = locus_of(half), half.joined()
     largest = np.abs([problem.split(whole.points)[1], whole.values]).max(axis=1)
     at = [number_text(value, digits, unit) for value, unit in zip((p, q), largest, strict=True)]
