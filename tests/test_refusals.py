@@ -222,7 +222,7 @@ REFUSED = {
     "as many are needed": lambda: algebraic(lambda x, p: [1.0, 2.0]),
     "not finite": lambda: algebraic(lambda x, p: x + np.nan),
     "spectrum": lambda: algebraic(spectrum="map"),
-    "F returns numbers in shape (1, 2)": lambda: algebraic(lambda u, p: [[p - u[0], u[1]]], (0.0, 0.0)),
+    "F returns an array of shape (1, 2)": lambda: algebraic(lambda u, p: [[p - u[0], u[1]]], (0.0, 0.0)),
     "mirror returns 1 numbers for 2 unknowns": lambda: cv.diagram(
         algebraic(lambda u, p: p * u - u**3, (0.0, 0.0), -1.0, mirror=lambda u: u[:1]), within=UNIT
     ),
@@ -364,7 +364,7 @@ REFUSED = {
         algebraic(), within=UNIT, dept=3
     ),
     "use settings={'max_step': 0.01}": lambda: cv.diagram(algebraic(), within=UNIT, max_step=0.01),
-    "chart needs within (Its interval)": lambda: cv.chart(line(), over="q"),
+    "chart needs within (Interval of the second parameter)": lambda: cv.chart(line(), over="q"),
     "Absorber needs friction (Coulomb coefficient) and gravity": lambda: Absorber(restitution=0.76),
     "Absorber takes its parameters by name, as restitution=0.76, not 0.5 alone": lambda: Absorber(0.5),
     "MapProblem has no argument 'paramter' (did you mean 'parameter'?); it has f": lambda: cv.MapProblem(

@@ -309,7 +309,7 @@ class Family:
         outside = last.points + OUTWARDS * (last.points - last.points.mean(axis=0))
         if not np.isfinite([self.section(last.value).step(x) for x in outside]).all():
             return (
-                f"ends {at}: points a little outside of it are no states of the motion, or run away (where the section is taken, "
+                f"ends {at}: motions from points a little outside of the circle do not return, or the points are impossible states (at the section, "
                 "the motion is next to a wall)"
             )
         why = "it is no longer smooth" if torn else "it cannot be followed any further"

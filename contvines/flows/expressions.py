@@ -44,8 +44,8 @@ ALLOWED = re.compile(r"^[\w\s.+\-*/(),]*$")
 # keywords before name=value
 DECLARED = re.compile(r"(par\w*|p|number|num|init|i)\s+(?=[a-z_]\w*\s*=)")
 IGNORED = re.compile(r"(aux|set|only|export|options)\s+[^\s=]|[@\"]")
-RANDOM = "what is random has no branches"
-MEMORY = "what depends on the past is no ordinary differential equation"
+RANDOM = "random equations have no branches"
+MEMORY = "equations that depend on the past are no ordinary differential equations"
 JUMPS = "motions that jump are no smooth flow; orbits.Machine takes them"
 ARRAYS = "arrays are not read; write a line for each state"
 PIECES = "conditions and comparisons are not read; heav(x), sign(x), abs(x), max(x,y), min(x,y) are, and a sigmoid is smooth"
@@ -221,7 +221,7 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
                     parameters[new(name, where)] = _number(value, where)
             continue
         if re.match(r"(par|number|init)\w*(\s|$)", low) and "=" not in low:
-            raise ValueError(f"{where}: no name=value is there")
+            raise ValueError(f"{where}: it has no name=value")
         if found := re.match(r"([a-z_]\w*)\s*'\s*=(.*)$|d([a-z_]\w*)/dt\s*=(.*)$", low):
             name, text = (found[1], found[2]) if found[1] else (found[3], found[4])
             rates[new(name, where)] = _formula(text, where)
@@ -288,7 +288,7 @@ def _refuse_unknown(
         for name in sorted(formula.names - known):
             if name in fixed:
                 raise ValueError(
-                    f"{formula.where}: {name!r} is further down; fixed quantities may have those above alone"
+                    f"{formula.where}: {name!r} is further down; a fixed quantity may only use those above it"
                 )
             hint = did_you_mean(name, [*known, *functions, *words])
             raise ValueError(f"{formula.where}: {name!r} is no state, parameter or fixed quantity{hint}")
@@ -320,7 +320,7 @@ def _formula(text: str, where: str) -> Formula:
         tree = ast.parse(text, mode="eval")
     except SyntaxError:
         raise ValueError(
-            f"{where}: this is no formula, as numbers and names with + - * / ^ ( ) between them are"
+            f"{where}: this is no formula: a formula has numbers and names with + - * / ^ ( ) between them"
         ) from None
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
     called = {id(node.func) for node in calls}
@@ -328,7 +328,7 @@ def _formula(text: str, where: str) -> Formula:
     if any(isinstance(node, ast.Tuple) for node in ast.walk(tree)) or not all(
         isinstance(node.func, ast.Name) for node in calls
     ):
-        raise ValueError(f"{where}: this is no formula: a comma or a bracket is where none can be")
+        raise ValueError(f"{where}: this is no formula: a comma or a bracket is at a wrong place")
     own = [(node.func.id[:-1], len(node.args)) for node in calls if isinstance(node.func, ast.Name)]
     return Formula(where, compile(tree, where, "eval"), names, own)
 

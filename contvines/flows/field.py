@@ -356,7 +356,7 @@ class Events:
         for name, value in zip(self.names, first, strict=True):
             if not np.isfinite(value) or value == 0.0:
                 raise ValueError(
-                    f"events: {name} is {value:g} at x0; its sign there says on which side motions are: move x0 off it"
+                    f"events: {name} is {value:g} at x0; its sign at x0 determines the side of the motions, so it must be finite and not zero there: choose another x0"
                 )
         self.signs = np.sign(first)
 

@@ -120,7 +120,7 @@ class Flow(ABC):
         size = TINY + np.nanmax(np.abs(one), initial=0.0)
         if np.nanmax(np.abs(one - later), initial=0.0) > self.settings.recurs * size:
             raise ValueError(
-                f"period = {period:.10g} at the start is no period of f(x, p, t) in t: f differs there after that time; mend period= or f"
+                f"period = {period:.10g} at the start is no period of f(x, p, t) in t: f differs there after that time; correct period= or f"
             )
 
     def _find_mirror(self) -> None:
@@ -135,7 +135,7 @@ class Flow(ABC):
             if np.abs(found - wanted).max() <= self.settings.agree * size:
                 return
         raise ValueError(
-            "mirror: f(R x, p, t) is neither R f(x, p, t) nor R f(x, p, t + period/2); leave mirror= out, or mend it"
+            "mirror: f(R x, p, t) is neither R f(x, p, t) nor R f(x, p, t + period/2); leave mirror= out, or correct it"
         )
 
     # ------------------------------------------------------------------ solutions

@@ -100,11 +100,11 @@ class InfinitePeriod:
                     f"heteroclinic cycle of {' and '.join(map(str, self.saddles))}; period {self.period:.6g}"
                 )
             case Limit.SADDLE_NODE:
-                return f"saddle-node on the cycle: its period, {self.period:.6g} here, grows where it passes {_place(self.slowest)} without an equilibrium being there yet"
+                return f"saddle-node on the cycle: the period, {self.period:.6g} here, grows as the cycle becomes slow near {_place(self.slowest)}, where there is no equilibrium yet"
             case Limit.AT_REST:
                 return (
-                    f"the cycle comes to rest as a whole: its period, {self.period:.6g} here, grows as its speed falls everywhere, to a circle of equilibria at "
-                    f"{self.parameter} = {self.value:.6g}, as of rotating waves whose rotation turns round there; begin beyond it to go on"
+                    f"the cycle comes to rest as a whole: its period, {self.period:.6g} here, grows as its speed falls everywhere. The limit is a circle of equilibria at "
+                    f"{self.parameter} = {self.value:.6g}, as for a rotating wave whose rotation reverses there; begin beyond it to continue"
                 )
 
 

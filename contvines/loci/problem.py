@@ -414,7 +414,7 @@ class PointOfLocus:
         """F_u of the problem's equations, shape (N, N)."""
         kernels, data, work = self.there.kernels, self.there.data, self.there.workspace()
         if kernels.matrix is None:
-            raise ValueError(f"a {type(self.there).__name__} does not tell its Jacobian")
+            raise ValueError(f"a {type(self.there).__name__} does not provide its Jacobian")
         kernels.linearise(data, self.u, self.value, work)
         return np.array(kernels.matrix(data, work))
 

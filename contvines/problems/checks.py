@@ -55,8 +55,8 @@ def empty_row(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
         return None
     i = int(np.argmax(zero))
     return (
-        f"row {i} of {functions.name} is zero at the start and wherever it was tried round it, whatever the unknowns and {name} are: "
-        f"it is no equation, and {len(u)} are needed for {len(u)} unknowns"
+        f"row {i} of {functions.name} is zero at the start and at all points tried around it, for any unknowns and {name}: "
+        f"it is no equation, and {len(u)} equations are needed for {len(u)} unknowns"
     )
 
 
@@ -89,8 +89,8 @@ def _wrong_derivative(
         return None
     i = int(np.argmax(gap))
     return (
-        f"derivative disagrees with {functions.name} in row {i}: it says {given[i]:.10g}, "
-        f"differences of {functions.name} say {near.value[i]:.10g}, at {functions.parameters.varying} = {p:.10g}"
+        f"derivative disagrees with {functions.name} in row {i}: it returns {given[i]:.10g}, "
+        f"differences of {functions.name} give {near.value[i]:.10g}, at {functions.parameters.varying} = {p:.10g}"
     )
 
 
@@ -130,8 +130,8 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
     ):
         turned = "; it seems to be transposed"
     return (
-        f"jacobian disagrees with {functions.name} in row {i}, column {j}: it says {given:.10g}, "
-        f"differences of {functions.name} say {found:.10g}, {where}{turned}"
+        f"jacobian disagrees with {functions.name} in row {i}, column {j}: it returns {given:.10g}, "
+        f"differences of {functions.name} give {found:.10g}, {where}{turned}"
     )
 
 

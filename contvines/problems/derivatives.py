@@ -184,9 +184,7 @@ class Differentiated:
             raise ValueError(f"{error}, {where}") from error
         shape = given.shape if isinstance(given, Sparse | Operator) else np.shape(given)
         if shape is not None and len(shape) > 1:
-            raise ValueError(
-                f"{self.name} returns numbers in shape {shape}; they are needed in a row, of shape ({len(u)},)"
-            )
+            raise ValueError(f"{self.name} returns an array of shape {shape}; shape ({len(u)},) is needed")
         if len(value) != len(u):
             raise ValueError(
                 f"{self.name} returns {len(value)} numbers for {len(u)} unknowns; as many are needed"

@@ -123,7 +123,7 @@ class UserFunction:
             shape = value.shape or (0,)
             if not (isinstance(value, Sparse) and (len(shape) == 1 or min(shape) <= 1)):
                 raise NotEvaluable(
-                    f"{self.name} returns a matrix of shape {value.shape}; numbers in a row are needed"
+                    f"{self.name} returns a matrix of shape {value.shape}; a flat sequence of numbers is needed"
                 )
             value = value.toarray()
         try:
@@ -148,8 +148,8 @@ def difference_text(one: np.ndarray, other: np.ndarray) -> str:
         return ""
     i = int(np.nanargmax(apart))
     return (
-        f"asked twice for the same arguments the equations have different values ({one[i]:.6g} and {other[i]:.6g} in row {i}); "
-        "what is random, or remembers earlier calls, has no branches"
+        f"two evaluations of the equations at the same arguments differ ({one[i]:.6g} and {other[i]:.6g} in row {i}); "
+        "equations that are random, or depend on earlier calls, have no branches"
     )
 
 

@@ -67,7 +67,7 @@ def factory(name: object) -> Callable[..., Any]:
             return getattr(import_module(module), function)
     shown = repr(name) if len(repr(name)) <= 80 else repr(name)[:77] + "..."
     raise UnknownFactory(
-        f"the file names the factory {shown}, which is not one that rebuilds problems; it was not called "
+        f"the file names the factory {shown}, which is not on the list of factories; it was not called "
         "(contvines.register(name, function) adds one of your own)"
     )
 
@@ -197,12 +197,12 @@ def without_problem(label: str, description: Mapping[str, Any] | None = None) ->
     if description is None:
         return (
             f"{label} has no problem attached: make the problem and call graph.attach(problem), or load the file with trust=True (--trust) "
-            "if you trust its maker; functions that cannot be imported by a name (lambdas, those of a script) are not loaded even so"
+            "if you trust its source; even then, functions that cannot be imported by a name (lambdas, functions of a script) are not loaded"
         )
     if named:
         return (
             f"{label} has no problem attached: a function of your own is not imported because a file names it; make the "
-            "problem and call graph.attach(problem), or load the file with trust=True (--trust) if you trust its maker"
+            "problem and call graph.attach(problem), or load the file with trust=True (--trust) if you trust its source"
         )
     return (
         f"{label} has no problem attached: its graph was saved from functions that cannot be imported by a name (lambdas, or "

@@ -94,7 +94,7 @@ def order_of(image: Image, n: int, most: int) -> int | None:
 
 
 def refuse_no_mirror(image: Image, n: int) -> None:
-    """Raise an error for a mirror that is not its own inverse, such as a projection or a rotation by a quarter.
+    """Raise an error for a mirror that is not its own inverse, such as a projection or a quarter turn.
 
     Raises
     ------
@@ -243,8 +243,8 @@ def refuse_asymmetry(
     where = f"at u = {_shown(found.u)}, {varying} = {found.p:.6g}"
     if found.row < 0:
         raise ValueError(
-            f"{name} is no symmetry of {functions.name}, which cannot be evaluated at the images of the states that were "
-            f"tried, of that {where} for one"
+            f"{name} is no symmetry of {functions.name}, which cannot be evaluated at the images of the tested states, "
+            f"for example {where}"
         )
     raise ValueError(
         f"{name} is no symmetry of {functions.name}: {where}, row {found.row} of {functions.name} at the image is "

@@ -23,5 +23,5 @@ def noisy(x, p, *t):
     ids=["an equilibrium", "a cycle", "forced", "a map"],
 )
 def test_random_rates(ask):
-    with pytest.raises(ValueError, match="asked twice for the same arguments .* in row 0"):
+    with pytest.raises(ValueError, match="two evaluations .* at the same arguments differ .* in row 0"):
         ask()
