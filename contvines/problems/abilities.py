@@ -355,7 +355,7 @@ class Adaptive(Protocol):
     | ``too_coarse(u, p)`` | whether more unknowns are needed; `stuck`: Newton's method has failed next to u |
     | ``refined()`` | the problem with more unknowns |
     | ``halved(u, direction)`` | unknowns, or a direction, in the refined problem |
-    | ``parts_of_refined`` | 1: every interval is halved, and ``halved`` accepts rows of unknowns; 2: the mesh is repeated with equal halves |
+    | ``parts_of_refined`` | 1: every interval is halved, and ``halved`` accepts arrays whose rows are unknowns; 2: the refined mesh has two equal halves |
     """
 
     chunk: int

@@ -33,22 +33,29 @@ The contract:
 3. The attribute ``data`` and the result of ``workspace()`` are the ``data`` and ``work`` of the kernels; their contents are private to the problem.
 4. ``spectrum`` is the kind of the raw spectrum: "map" (stable inside the unit circle), "flow" (stable left of the imaginary axis), "none".
    With "none", ``detection`` = "real" still lets branch points be found from real eigenvalues.
-   ``flip_kind`` is the bifurcation at a raw multiplier -1: "period-doubling" or "symmetry-breaking".
+   ``flip_kind`` is the bifurcation at a raw multiplier -1: "period-doubling" or "symmetry-breaking". ``to_multipliers`` converts the raw
+   spectrum to multipliers over the full period (squares, if the raw ones belong to half a period) or eigenvalues in the unit of time.
 5. Solutions that differ by a multiple of ``period_shift`` or by one of the ``symmetries`` are equivalent. ``canonical(u, p)`` returns a
    hashable key and a vector which are equal for equivalent solutions; the vector has the scales of the unknowns or, if it is longer,
    entries of order one. If a solution only repeats a shorter one (a cycle run through twice), ``root(u, p)`` returns the smaller
    problem and its unknowns, else None. ``same_motion(u, p, other, v)`` compares solutions of two problems that ``canonical`` cannot
    compare (two words of one motion at a border): True, False, or None if the problem cannot decide.
 6. ``offspring`` returns larger problems in which a special point is a branch point (cycles of twice the period); ``beyond`` returns
-   the solutions on the other side of a border, and ``dead_end`` the reason if there are none.
+   the solutions on the other side of a border, and ``dead_end`` the reason if there are none. ``margin_kind(j)`` is the kind of border at
+   which margin j vanishes.
 7. ``parameters`` are all parameters by name; ``against`` returns the problem with another parameter varying. ``check_value``
    raises ValueError for a value that a parameter cannot have.
 8. ``scale_within`` returns typical sizes of the unknowns and the parameter; ``amplitude`` the length of a direction of the unknowns,
    by which normal forms are normalised. Equations without ``scales`` (learned or given) must have residuals of order 1.
 9. ``movable`` solutions are not isolated: they form families by a continuous shift.
-10. ``uncertainty`` is the relative accuracy of the equations; ``check`` returns a sentence if given derivatives disagree with the
-    equations; ``explain_end`` returns the reason why Newton's method fails at the end of a branch. ``at_each_point`` returns a
-    measure at each point of the cycles, shape (m, n), or None.
+10. ``uncertainty`` is the relative accuracy of the equations, ``noise`` that of the unknowns if the equations have noise; ``check`` returns
+    a sentence if given derivatives disagree with the equations; ``explain_end`` returns the reason why Newton's method fails at the end of
+    a branch.
+11. ``measures(names, u, p)`` returns measures by name, each of shape (m,), of m solutions u of shape (m, N); ``angles`` are the names of
+    measures in radians modulo 2 pi. ``at_each_point`` returns a measure at each of the n points of m cycles, shape (m, n), or None.
+    ``orbit(u, p)`` returns a solution as an object for users, ``replay(u, p)`` the largest deviation of a simulation from it (None: it cannot
+    be simulated), and ``simulated_attractors(p)`` the motions on which simulated starts settle, as JSON-able dicts. ``describe()`` returns a
+    JSON-able description, from which the factory that it names rebuilds the problem (:mod:`contvines.problems.registry`).
 
 The protocol `Problem` consists of five smaller ones, `Equations`, `Spectrum`, `Symmetries`, `Borders` and `Description`; a function
 requires the one that it uses. They are structural: a problem need not inherit from them. :class:`ProblemDefaults` implements the members
@@ -210,7 +217,7 @@ def margin_of(point: BorderPoint) -> int:
 
 
 class Equations(Protocol):
-    """F(u, p) = 0, its parameters and scales (items 1 to 3, 7, 8 and 10 of the contract)."""
+    """F(u, p) = 0, its parameters, scales and accuracy (items 1 to 3, 7, 8 and 10 of the contract)."""
 
     @property
     def dimension(self) -> int: ...
@@ -280,7 +287,7 @@ class Borders(Protocol):
 
 
 class Description(Protocol):
-    """Measures, description and simulation of solutions (item 10)."""
+    """Measures, description and simulation of solutions (item 11)."""
 
     @property
     def measure_names(self) -> Sequence[str]: ...
