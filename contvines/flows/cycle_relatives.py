@@ -144,7 +144,12 @@ class CycleRelatives(CycleMesh):
 
     # ------------------------------------------------------------------ homoclinic orbits
     def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
-        """Return the margins: log10 of the distance from an equilibrium and of the remaining growth of the period (autonomous flows), each relative to its limit; then the smallest values of the events."""
+        """Return the margins.
+
+        For autonomous flows the first two are log10(distance from an equilibrium, relative to the cycle's size / `homoclinic`) and
+        log10(`longest` / period, relative to the first one), with limits of :class:`contvines.flows.FlowSettings`. Then follow the smallest values of
+        the events along the cycle.
+        """
         own = self._from_homoclinic(u, work) if self.free_period else np.zeros(0)
         return np.append(own, self._closest(u, work.along[1])[0]) if len(self.flow.events) else own
 
@@ -201,7 +206,11 @@ class CycleRelatives(CycleMesh):
         return max(distance_to_rest(work.along[2] @ back, work.along[3]), TINY)
 
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
-        """Estimate the distance of the parameter from its limit p* at infinite period: T |dp/dT|, twice the distance if p - p* is proportional to 1 / T^2 (saddle-node); near a saddle it is smaller."""
+        """Estimate the distance of the parameter from its limit p* at infinite period by T |dp/dT|.
+
+        This is twice the distance if p - p* is proportional to 1 / T^2 (saddle-node). At a saddle the distance decreases exponentially with T and is smaller
+        than the estimate.
+        """
         change = abs(float(tangent[self.states]))
         return float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
 

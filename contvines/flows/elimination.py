@@ -49,7 +49,10 @@ def condense(blocks: np.ndarray, columns: np.ndarray, d: int) -> Condensed:
 
 
 def _eliminated(front: np.ndarray, whole: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """Eliminate y from ``front[i] y_i + whole[i] z_i = 0``: return the maps of ``y_i = -maps[i] z_i``, the remaining equations of z, and the sign of the determinant of the eliminated part."""
+    """Eliminate y from ``front[i] y_i + whole[i] z_i = 0``.
+
+    Returns the maps of ``y_i = -maps[i] z_i``, the remaining equations of z, and the sign of the determinant of the eliminated part.
+    """
     k = front.shape[2]
     q, r = np.linalg.qr(front, mode="complete")
     turned = np.matmul(q.transpose(0, 2, 1), whole)

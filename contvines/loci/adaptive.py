@@ -41,7 +41,7 @@ class AdaptiveLocus(LocusProblem):
 
     @property
     def tested(self) -> int:
-        """Condition whose test is evaluated: for folds of cycles in the plane the multiplier, since near canards the equations are singular to rounding although it is not 1."""
+        """Condition whose test is evaluated. Folds of planar cycles use the multiplier: near canards the equations are singular to rounding although it is not 1."""
         return GROWTH if self.condition == FOLD and self.n_multipliers == 1 else self.condition
 
     @property

@@ -362,7 +362,7 @@ def worn(work, null):
 
 
 def locus_inspect(data, U, q, work, row):
-    """Write multipliers and margins of the problem, then three margins of the locus: p above and below its bounds, and the pair still complex.
+    """Write multipliers and margins of the problem, then three margins of the locus: p above its lower and below its upper bound, and the pair still complex.
 
     It also renews the borders if necessary.
     """
