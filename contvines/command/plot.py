@@ -170,16 +170,15 @@ def compared(
 ) -> Figure:
     """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
     from ..plots.diagram import draw_diagram, plot_diagram
-    from ..plots.figures import new_axes, styled
+    from ..plots.figures import drawing
 
     if not kinds:
         return plot_diagram(graph, x, y, **options)
-    with styled(options.pop("style", None)):
-        figure, axes = new_axes(None, figsize=options.pop("figsize", None))
+    with drawing(None, options.pop("style", None), options.pop("figsize", None)) as (figure, axes, own):
         draw_compared(axes, graph, kinds, x, y)
         limits = options.pop("xlim", None), options.pop("ylim", None)
-        draw_diagram(axes, graph, x, y, own=True, limits=limits, **options)
-        return figure
+        draw_diagram(axes, graph, x, y, own, limits=limits, **options)
+    return figure
 
 
 def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None, y: str | None) -> None:

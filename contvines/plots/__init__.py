@@ -35,18 +35,5 @@ __all__ = [
 
 __getattr__ = on_demand(
     __name__,
-    {
-        "plot_atlas": "contvines.plots.atlas",
-        "plot_basins": "contvines.plots.basins",
-        "plot_chart": "contvines.plots.chart",
-        "plot_circles": "contvines.plots.circles",
-        "plot_diagram": "contvines.plots.diagram",
-        "plot_erosion": "contvines.plots.erosion",
-        "plot_multipliers": "contvines.plots.multipliers",
-        "plot_network": "contvines.plots.network",
-        "plot_portrait": "contvines.plots.portrait",
-        "plot_survey": "contvines.plots.survey",
-        "plot_sweep": "contvines.plots.sweep",
-        "save_figure": "contvines.plots.figures",
-    },
+    {name: f"{__name__}.{name.replace('plot_', '').replace('save_figure', 'figures')}" for name in __all__},
 )

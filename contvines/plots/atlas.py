@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
+from ..graph.contents import Attractor
+from ..graph.graph import CurveOptions, Graph
 from ..graph.table import told_apart
 from .basins import COLORS
 from .diagram import draw_diagram
-from .figures import Size, Style, freeze, given_axes, narrower, new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, fit, narrower, panels, settle
 from .legends import NARROW, draw_legend, place_legend
-from .picture import lay_out_again
 from .style import HATCHES, axis_label
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..graph.contents import Attractor
-    from ..graph.graph import CurveOptions, Graph
 
 MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one
 LOW = 3.4  # inches
@@ -60,16 +56,11 @@ def plot_atlas(
     """
     if not graph.attractors:
         raise ValueError("the graph has no attractors: contvines atlas makes one with, from a study")
-    with styled(style):
-        own = axes is None
-        if axes is None:
-            size = figsize or (7.2, 6.4)
-            figure = new_figure(figsize=size)
-            heights = (2.4 if size[1] > LOW else 1.8, 1)
-            upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=heights)
-        else:
-            figure, (upper, lower) = given_axes(axes, (2,), "an atlas is drawn on")
-        small = own and figure.get_size_inches()[1] < LOW
+    own, size = axes is None, figsize or (7.2, 6.4)
+    small = own and size[1] < LOW
+
+    below = {"mosaic": "a;b", "sharex": True, "height_ratios": (1.8 if small else 2.4, 1)}
+    with panels(axes, (2,), "an atlas is drawn on", size, style, below) as (figure, (upper, lower)):
         picture = draw_diagram(upper, graph, x, y, False, legend=False, **options)
         if own:
             upper.set_xlabel("")
@@ -77,21 +68,20 @@ def plot_atlas(
         draw_shares(lower, graph, FEW if small else MOST)
         unit = graph.units.get(graph.parameter)
         lower.set_xlabel(axis_label(graph.parameter, unit=unit, notation=graph.notation))
-        if small and len(lower.get_ylabel()) > 8:
+        if small:
             lower.set_ylabel("share")
         # a high figure has both keys; they stand below one another where there is no room beside the panels
         handles = lower.get_legend_handles_labels()[0]
-        if own and not small and narrower(lower, NARROW):
-            place_legend(lower, [*picture.key.handles(), *handles], legend, own, remarks=picture.key.remarks)
+        if own and not small and (narrower(lower, NARROW) or legend == "below"):
+            place_legend(lower, [*picture.handles(), *handles], legend, own, remarks=picture.remarks)
         else:
             place_legend(lower, handles, legend, own, usual="beside")  # first: it narrows both panels
             if not small:
-                draw_legend(upper, picture.key, legend, own, picture.obstacles())
-        settle(figure)
+                draw_legend(upper, picture.handles(), legend, own, picture.remarks)
         if own:
-            thin_ticks(upper, lower)
-            freeze(figure)
-        lay_out_again(upper)
+            fit(figure, frozen=True)
+        settle(figure)
+        picture.lay_out()
     return figure
 
 

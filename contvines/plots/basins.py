@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
+from ..coexistence.basins import Basins
 from ..continuation.settings import hinting
 from ..graph.table import told_apart
 from ..shared.numbers import figures
-from .figures import Size, Style, drawing, is_low
+from .figures import Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..coexistence.basins import Basins
 
 # the first ones differ in lightness, too
 COLORS = ("#1f5c87", "#efb04e", "#5f2570", "#58a868", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
@@ -43,17 +41,12 @@ def plot_basins(
     axes, legend, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """
-    from matplotlib.colors import to_rgb
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     count = len(basins.attractors)
     base = np.array([to_rgb(COLORS[k % len(COLORS)]) for k in range(max(count, 1))])
     base[[k for k, one in enumerate(basins.attractors) if one.kind == "impossible"]] = 0.9  # no start at all
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
     with drawing(axes, style, figsize) as (figure, axes, own):
-        low = own and is_low(axes)
         axes.grid(False)
         x, y = (basins.shown(name, v) for name, v in zip(basins.axes, (basins.x, basins.y)))
         half_x, half_y = (0.5 * (v[1] - v[0]) for v in (x, y))
@@ -66,12 +59,9 @@ def plot_basins(
         axes.set_ylim(extent[2:])
         if basins.axes[0] == basins.leftward:
             axes.invert_xaxis()
-        across, up = (
-            axis_label(name, unit=basins.gauges.get(name, (1.0, ""))[1], notation=basins.notation)
-            for name in basins.axes
-        )
-        axes.set_xlabel(across)
-        axes.set_ylabel(up.replace(" of the start", "") if low else up)
+        gauges, notation = basins.gauges, basins.notation
+        across, up = (axis_label(n, gauges.get(n, (1.0, ""))[1], notation) for n in basins.axes)
+        axes.set(xlabel=across, ylabel=up)
         axes.set_title(f"{basins.parameter} = {figures(basins.value)} {basins.unit}".rstrip())
         if legend:
             entries = []

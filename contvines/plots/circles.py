@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from ..circles.circle import Circles
 from ..continuation.settings import hinting
 from .figures import Size, Style, panels
 from .legends import place_legend
-from .style import axis_label
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..circles.circle import Circles
-
-
-NARROW, LOW = 5.0, 3.4  # inches: below, panels stand under one another, or the section stands alone
+from .style import BLUE, axis_label
 
 
 def _roundest(circles: Circles) -> tuple[str, ...]:
@@ -67,33 +61,26 @@ def plot_circles(
     if len(wanted) != 2:
         raise ValueError("coordinates: give two names")
     i, j = (names.index(name) for name in wanted)
-    size = figsize or (8.2, 3.9)
 
-    def arranged(figure: Figure) -> list[Axes]:
-        if size[0] < NARROW and size[1] < LOW:
-            return [figure.add_subplot()]
-        if size[0] < NARROW:
-            grid = figure.add_gridspec(3, 1, height_ratios=(2.0, 1.0, 1.0))
-            places = [grid[0, 0], grid[1, 0], grid[2, 0]]
-        else:
-            grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
-            places = [grid[:, 0], grid[0, 1], grid[1, 1]]
-        section, radius = (figure.add_subplot(place) for place in places[:2])
-        rotation = figure.add_subplot(places[2], sharex=radius)
-        radius.tick_params(labelbottom=False)
-        return [section, radius, rotation]
-
-    with panels(axes, (1, 3), "circles are drawn on", arranged, size, style) as (figure, drawn):
-        _section(drawn[0], circles, (i, j))
+    colors = colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
+    beside = {"mosaic": "ab;ac", "width_ratios": (1.25, 1.0)}
+    below = {"mosaic": "a;b;c", "height_ratios": (2.0, 1.0, 1.0)}
+    what, size = "circles are drawn on", figsize or (8.2, 3.9)
+    with panels(axes, (1, 3), what, size, style, beside, below) as (figure, drawn):
+        _section(drawn[0], circles, (i, j), colors)
         if len(drawn) == 3:
-            _sizes(drawn[1], drawn[2], circles, legend)
+            if axes is None:
+                drawn[2].sharex(drawn[1])
+                drawn[1].tick_params(labelbottom=False)
+            _sizes(drawn[1], drawn[2], circles, colors)
+            place_legend(drawn[1], None, legend, False)
     return figure
 
 
-def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
+def _section(axes: Axes, circles: Circles, pair: tuple[int, int], colors: np.ndarray) -> None:
     """The circles once per period, later ones lighter; repelling ones dashed."""
     phases = np.linspace(0.0, 2.0 * np.pi, 361)
-    for circle, color in zip(circles.circles, _colors(circles)):
+    for circle, color in zip(circles.circles, colors):
         x = circle.at(phases)[:, pair]
         axes.plot(*x.T, color=color, linewidth=0.9, linestyle="--" if circle.stable is False else "-")
     axes.plot(*(circles.centre[k] for k in pair), "k+", markersize=7)
@@ -103,23 +90,16 @@ def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
         axes.set_title("dashed: repelling", loc="left", fontsize="medium")
 
 
-def _colors(circles: Circles) -> np.ndarray:
-    from matplotlib import colormaps
-
-    return colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
-
-
-def _sizes(radius: Axes, rotation: Axes, circles: Circles, legend: bool | str) -> None:
+def _sizes(radius: Axes, rotation: Axes, circles: Circles, colors: np.ndarray) -> None:
     """Radius, with what the normal form says, and turns per period against the parameter."""
     values = np.append(circles.value, circles.values)
     predicted = np.append(0.0, [circle.predicted for circle in circles.circles])
     look = {"marker": ".", "markersize": 4}
-    radius.plot(values, np.append(0.0, circles.radius), color="#0b3c6f", label="circle", **look)
-    for value, size, color in zip(circles.values, circles.radius, _colors(circles)):
+    radius.plot(values, np.append(0.0, circles.radius), color=BLUE, label="circle", **look)
+    for value, size, color in zip(circles.values, circles.radius, colors):
         radius.plot([value], [size], "o", color=color, markersize=4.5, zorder=4)  # the key to the section
     radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
     radius.set_ylabel("radius")
-    place_legend(radius, None, legend, False)
     rotation.plot(values, np.append(circles.rotation, circles.rotations), color="#7c3aed", **look)
     across = axis_label(circles.parameter, notation=circles.notation)
     rotation.set(xlabel=across, ylabel="turns per period")

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from ..branches.branch import Branch
+from ..branches.branch import Branch
 
 CORNER = 0.06  # radians: a turn between neighbouring segments on the page that the eye sees
 SHORT = 4.0  # pixels: a segment this short needs no refinement
@@ -40,13 +38,9 @@ class Curve:
             branch, x, y, branch.points[first : last + 1], branch.values[first : last + 1]
         )
 
-    def strands(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """x and y of each line through the stored points: one, or one per point of a cycle."""
-        return [broken(xs, ys, self.turning) for xs, ys in self._stored]
-
     def draw(self, axes: Axes, style: Mapping[str, Any]) -> None:
-        """Draw through the stored points; `style` as matplotlib's lines know it."""
-        self.lines = [axes.plot(xs, ys, **style)[0] for xs, ys in self.strands()]
+        """Draw through the stored points, a line per point of a cycle; `style` as matplotlib's lines know it."""
+        self.lines = [axes.plot(*broken(xs, ys, self.turning), **style)[0] for xs, ys in self._stored]
 
     def refine(self, axes: Axes) -> None:
         """Put points between the stored ones where the drawn line has corners, for the limits that the axes have now."""
@@ -88,45 +82,23 @@ def between(
 
     Shapes: `counts` (last - first,), the indices inclusive; u (m, N), p (m,), and which of them are no stored points (m,).
     """
-    z = np.column_stack([branch.points[first : last + 1], branch.values[first : last + 1]])
-    slopes = np.asarray(branch.tangents[first : last + 1], dtype=float)
-    rows, new = [], []
-    for i in range(len(z)):
-        rows.append(z[i : i + 1])
-        new.append(np.zeros(1, bool))
-        if i + 1 == len(z) or counts[i] == 0:
-            continue
-        s = (np.arange(1, counts[i] + 1) / (counts[i] + 1))[:, None]
-        chord = z[i + 1] - z[i]
-        ends = _ends(slopes[i], slopes[i + 1], chord)
-        # cubic Hermite basis on [0, 1]
-        rows.append(
-            (1 + 2 * s) * (1 - s) ** 2 * z[i]
-            + s * (1 - s) ** 2 * ends[0]
-            + s**2 * (3 - 2 * s) * z[i + 1]
-            + s**2 * (s - 1) * ends[1]
-        )
-        new.append(np.ones(int(counts[i]), bool))
-    joined = np.concatenate(rows)
-    return joined[:, :-1], joined[:, -1], np.concatenate(new)
-
-
-def _ends(first: np.ndarray, last: np.ndarray, chord: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives at both ends of an arc with these directions: those of the parabola where there is one.
-
-    A quadratic arc z(s), s in [0, 1], has z'(0) + z'(1) = 2 chord; its lengths follow by least squares.
-    """
-    length = np.linalg.norm(chord)
-    sizes = np.linalg.norm(first), np.linalg.norm(last)
-    if not (min(sizes) > 0.0 and min(first @ chord / sizes[0], last @ chord / sizes[1]) > 0.3 * length):
-        return chord, chord  # a kink, or points that do not follow one another: a straight line
-    one, two = first / sizes[0], last / sizes[1]
-    lengths = np.array([length, length])
-    if one @ two < 0.9999:
-        found = np.linalg.lstsq(np.column_stack([one, two]), 2.0 * chord, rcond=None)[0]
-        if np.all((found > 0.2 * length) & (found < 5.0 * length)):
-            lengths = found
-    return lengths[0] * one, lengths[1] * two
+    z = np.column_stack([branch.points, branch.values])[first : last + 1]
+    slopes, chord = np.asarray(branch.tangents[first : last + 1], dtype=float), np.diff(z, axis=0)
+    length = np.linalg.norm(chord, axis=1)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ways = slopes / np.linalg.norm(slopes, axis=1)[:, None]
+    # at a kink, or between points that do not follow one another: a straight line
+    along = [np.sum(way * chord, axis=1, keepdims=True) for way in (ways[:-1], ways[1:])]
+    start, end = (
+        np.where(np.minimum(*along) > 0.3 * length, length * way, chord) for way in (ways[:-1], ways[1:])
+    )
+    i = np.repeat(np.arange(len(counts)), counts)
+    s = np.concatenate([np.arange(1, n + 1) / (n + 1) for n in counts])[:, None]
+    # cubic Hermite basis on [0, 1]
+    new = (1 + 2 * s) * (1 - s) ** 2 * z[i] + s * (1 - s) ** 2 * start[i]
+    new += s**2 * (3 - 2 * s) * z[i + 1] + s**2 * (s - 1) * end[i]
+    joined = np.insert(z, i + 1, new, axis=0)
+    return joined[:, :-1], joined[:, -1], np.insert(np.zeros(len(z), bool), i + 1, True)
 
 
 def _strands(
@@ -153,15 +125,10 @@ def _missing(axes: Axes, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     """How many points are wanted between neighbours, shape (n - 1,)."""
     page = axes.transData.transform(np.column_stack([xs, ys]))
     steps = np.diff(page, axis=0)
-    size = np.hypot(*steps.T)
     angle = np.arctan2(steps[:, 1], steps[:, 0])
     turn = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi)
-    sharp = np.zeros(len(size))
-    sharp[:-1] = np.maximum(sharp[:-1], turn)
-    sharp[1:] = np.maximum(sharp[1:], turn)
-    frame = axes.bbox
+    sharp = np.maximum(np.append(turn, 0.0), np.append(0.0, turn))
     low, high = np.minimum(page[:-1], page[1:]), np.maximum(page[:-1], page[1:])
-    seen = (high[:, 0] > frame.x0) & (low[:, 0] < frame.x1) & (high[:, 1] > frame.y0) & (low[:, 1] < frame.y1)
-    with np.errstate(invalid="ignore"):
-        wanted = np.where((sharp > CORNER) & (size > SHORT) & seen, np.ceil(sharp / CORNER), 0.0)
-    return np.clip(np.nan_to_num(wanted), 0, MOST).astype(int)
+    seen = np.all((high > axes.bbox.min) & (low < axes.bbox.max), axis=1)
+    wanted = (sharp > CORNER) & (np.hypot(*steps.T) > SHORT) & seen
+    return np.where(wanted, np.minimum(np.ceil(np.nan_to_num(sharp) / CORNER), MOST), 0).astype(int)

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.animation import FuncAnimation
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from contvines.shared.animations import animated, check_animation, pictures
 
 from ..continuation.settings import hinting
-from .figures import Size, Style, new_figure, root, styled
+from ..flows.orbit import CycleOrbit
+from .figures import Size, Style, panels
 from .style import STATE_COLORS, STATE_OF
-
-if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..flows.orbit import CycleOrbit
 
 SAMPLES = 800
 
@@ -52,18 +48,19 @@ def plot_cycle(
     if not (len(coordinates) == 2 and all(0 <= j < max(d, 2) for j in coordinates)):
         raise ValueError(f"coordinates = {coordinates!r} must be two of 0 to {d - 1}")
     color = STATE_COLORS[STATE_OF[orbit.stable]]
-    with styled(style):
-        if axes is not None:
-            _portrait(axes, times, states, coordinates, color)
-            return root(axes)
-        figure = new_figure(figsize=figsize or (7.2, 3.2))
-        left, right = figure.subplots(1, 2)
-        _portrait(left, times, states, coordinates, color)
-        for j in range(min(d, 4)):
-            right.plot(times, states[:, j], label=f"$x_{j}$")
-        right.set(xlabel="time", ylabel="states")
-        right.margins(x=0.0)
-        right.legend(loc="best", fontsize="small")
+
+    beside = {"mosaic": "ab"}
+    size = figsize or (7.2, 3.2)
+    with panels(axes, (1,), "a cycle is drawn on", size, style, beside) as (figure, drawn):
+        drawn[0].plot(*_plane(times, states, coordinates), color=color)
+        across, up = (f"$x_{j}$" for j in coordinates)
+        drawn[0].set(xlabel="time" if d == 1 else across, ylabel="$x_0$" if d == 1 else up)
+        for j in range(min(d, 4) if axes is None else 0):
+            drawn[1].plot(times, states[:, j], label=f"$x_{j}$")
+        if axes is None:
+            drawn[1].set(xlabel="time", ylabel="states")
+            drawn[1].margins(x=0.0)
+            drawn[1].legend(loc="best", fontsize="small")
     return figure
 
 
@@ -101,7 +98,7 @@ def animate_cycle(
     figure = plot_cycle(orbit, figsize=figsize, style=style, coordinates=coordinates)
     times = np.linspace(0.0, orbit.period, frames, endpoint=False)
     states = orbit(times)
-    places = (times, states[:, 0]) if states.shape[1] == 1 else states[:, list(coordinates)].T
+    places = _plane(times, states, coordinates)
     left, right = figure.axes[:2]
     (mark,) = left.plot([places[0][0]], [places[1][0]], "o", color="0.1", markersize=6)
     now = right.axvline(0.0, color="0.2", linewidth=1.0)
@@ -113,13 +110,10 @@ def animate_cycle(
     return animated(figure, move, path, seconds, rate)
 
 
-def _portrait(
-    axes: Axes, times: np.ndarray, states: np.ndarray, coordinates: tuple[int, int], color: str
-) -> None:
+def _plane(
+    times: np.ndarray, states: np.ndarray, coordinates: tuple[int, int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """What the portrait has across and upright; of a single state its time and itself."""
     if states.shape[1] == 1:
-        axes.plot(times, states[:, 0], color=color)
-        axes.set(xlabel="time", ylabel="$x_0$")
-        return
-    i, j = coordinates
-    axes.plot(states[:, i], states[:, j], color=color)
-    axes.set(xlabel=f"$x_{i}$", ylabel=f"$x_{j}$")
+        return times, states[:, 0]
+    return states[:, coordinates[0]], states[:, coordinates[1]]

@@ -1,34 +1,41 @@
-"""The bifurcation diagram: branches as curves, special points as labelled marks."""
+"""The bifurcation diagram: branches as curves, special points as labelled marks, which are laid out again when the limits change."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib import rc_context, rcParams
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.inset import InsetIndicator
+from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 
+from contvines.shared.figures import shrinking
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
-from ..graph.stretches import default_measure
-from ..shared.numbers import TINY
-from .figures import Size, Style, freeze, is_low, new_axes, root, settle, styled, thin_ticks
-from .labels import Region
+from ..graph.contents import proof_mark, proved_stretches
+from ..graph.graph import Graph
+from ..graph.stretches import default_measure, measure_at, measured, undrawn
+from ..graph.table import motion_name, told_apart
+from .curves import Curve
+from .figures import Size, Style, drawing, fit, pixels, root, settle
+from .labels import Label, Region, add_inset, crowded_region, grouped, place_labels
 from .legends import draw_legend, hold_legend
-from .picture import Picture
-from .settings import DRAWING
-from .style import axis_label
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..graph.graph import Graph
-    from .curves import Curve
-
+from .style import PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, Mark, axis_label, line_of, mark_of
 
 COLORS = ("branch", "word", "stability")
+RUNAWAY = 6.0  # a range so many times wider than where special points and most points lie is not shown whole
+UPRIGHT = 1e-6  # part of the width of a picture: a line that is narrower stands upright
+MOST = (4.0, 96.0)  # per cent: where most points lie
+TEXT = 0.85  # size of labels in units of font.size
+POINTS, NAMES = (6.5, 0.3), (3.5, 0.15)  # labels of points, of branches: so many, and more per square inch
+FEW = 4.5  # inches: in narrower axes fewer labels stand together
 
 
 @hinting
@@ -100,14 +107,17 @@ def plot_diagram(
         raise ValueError(
             f"color = {color!r} is unknown{did_you_mean(color, COLORS)}; choose one of {', '.join(COLORS)}"
         )
-    _check_labels(graph, labels)
+    if isinstance(labels, str):
+        raise ValueError(f"labels = {labels!r}: give True, False or a list, for example [{labels!r}]")
+    unknown = [] if isinstance(labels, bool) else [label for label in labels if label not in graph]
+    if unknown:
+        known = ", ".join([*graph.branches, *graph.special])
+        raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {known}")
     own = axes is None
-    with styled(style):
-        figure, axes = new_axes(axes, figsize)
-        draw_diagram(
-            axes, graph, x, y, own, labels=labels, ends=ends, marks=marks, words=words, color=color, legend=legend, name=name,
-            limits=(xlim, ylim), inset=own if inset is None else inset,
-        )  # fmt: skip
+    look = {"labels": labels, "ends": ends, "words": words, "color": color, "name": name}
+    look["inset"] = own if inset is None else inset
+    with drawing(axes, style, figsize) as (figure, axes, _):
+        draw_diagram(axes, graph, x, y, own, marks=marks, legend=legend, limits=(xlim, ylim), **look)
     return figure
 
 
@@ -118,57 +128,38 @@ def draw_diagram(
     y: str | None,
     own: bool,
     *,
-    labels: bool | Sequence[str] = True,
-    ends: bool = False,
     marks: bool | Sequence[str] = True,
-    words: bool = False,
-    color: str = "branch",
     legend: bool | str = True,
-    name: str | None = None,
     limits: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None),
-    inset: bool | Region = False,
+    **look: Any,
 ) -> Picture:
-    """Draw a graph as :func:`plot_diagram` does, in the style of the moment; `own` says whether the figure is ours to be laid out."""
-    figure = root(axes)
+    """Draw a graph as :func:`plot_diagram` does, in the style of the moment; `own` says whether the figure is ours to be laid out.
+
+    `look` are the further options of :class:`Picture`.
+    """
     x, y = x or graph.parameter, y or default_measure(graph)
-    picture = Picture(axes, graph, x, y, color, name)
-    picture.draw_branches()
-    picture.draw_points(ends, _marked(graph, marks))
-    picture.draw_unresolved()
-    frame(axes, picture.curves, *limits)
-    if not axes.get_xlabel():
-        axes.set_xlabel(axis_label(x, unit=graph.units.get(x), notation=graph.notation))
-    if not axes.get_ylabel():
-        axes.set_ylabel(axis_label(y, is_low(axes), graph.units.get(y), notation=graph.notation))
+    picture = Picture(axes, graph, x, y, kinds=_marked(graph, marks), **look)
+    picture.draw()
+    frame(axes, *limits)
+    for name, text, label in (
+        (x, axes.get_xlabel(), axes.set_xlabel),
+        (y, axes.get_ylabel(), axes.set_ylabel),
+    ):
+        if not text:
+            label(axis_label(name, unit=graph.units.get(name), notation=graph.notation))
     picture.refine()  # what the layout changes of the axes' size later does not show in it
-    if limits[0] is not None and limits[1] is None:
-        fit_height(axes)  # once more: curves between stored points are known now
-        picture.refine()
-    picture.key_of_marks()
-    draw_legend(axes, picture.key, legend, own, picture.obstacles())
-    settle(figure)
+    if limits[0] is not None:
+        frame(axes, *limits)  # once more: curves between stored points are known now
+    picture.seen()
+    draw_legend(axes, picture.handles(), legend, own, picture.remarks)
     if own:
-        thin_ticks(axes)
-        freeze(figure)
-    hold_legend(axes)
-    picture.show_inset(inset, words)
-    if labels is not False:
-        picture.write_labels(labels, words, hold_legend(axes))
-        picture.follow_zoom()
+        fit(root(axes), frozen=True)
+    settle(root(axes))
+    picture.lay_out()
+    picture.follow_zoom()
     if not graph.finished:
         axes.set_title("unfinished", color="0.4")
     return picture
-
-
-def _check_labels(graph: Graph, labels: bool | Sequence[str]) -> None:
-    if isinstance(labels, bool):
-        return
-    if isinstance(labels, str):
-        raise ValueError(f"labels = {labels!r}: give True, False or a list, for example [{labels!r}]")
-    unknown = [label for label in labels if label not in graph]
-    if unknown:
-        known = ", ".join([*graph.branches, *graph.special])
-        raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {known}")
 
 
 def _marked(graph: Graph, marks: bool | Sequence[str]) -> list[str] | None:
@@ -186,18 +177,8 @@ def _marked(graph: Graph, marks: bool | Sequence[str]) -> list[str] | None:
     return [by_label.get(name, name) for name in wanted]
 
 
-RUNAWAY = 6.0  # a range so many times wider than where special points and most points lie is not shown whole
-UPRIGHT = 1e-6  # part of the width of a picture: a line that is narrower stands upright
-MOST = (4.0, 96.0)  # per cent: where most points lie
-
-
-def frame(
-    axes: Axes, curves: list[Curve], xlim: tuple[float, float] | None, ylim: tuple[float, float] | None
-) -> None:
-    """Set the limits: the asked ones, else all that is drawn but the far ends of branches that run away.
-
-    Where only the interval across is asked for, the height is that of what is seen in it.
-    """
+def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float] | None) -> None:
+    """Set the limits: the asked ones, else all that is drawn between those across, but the far ends of branches that run away."""
     axes.margins(0.04)
     axes.autoscale_view()
     if xlim is not None:
@@ -205,66 +186,259 @@ def frame(
     if ylim is not None:
         axes.set_ylim(*ylim)
         return
-    if xlim is not None:
-        fit_height(axes)
-        return
-    drawn = [v for curve in curves for _, ys in curve.strands() for v in ys[np.isfinite(ys)]]
-    heights = [np.atleast_1d(np.asarray(line.get_ydata(), dtype=float)) for line in axes.lines]
-    marks = [float(one[0]) for one in heights if len(one) == 1 and np.isfinite(one[0])]
-    limits = _without_runaways(np.array(drawn), np.array(marks), _leaning(curves, axes.get_xlim()))
-    if limits is not None and axes.get_yscale() == "linear":
-        axes.set_ylim(*limits)
-
-
-def fit_height(axes: Axes) -> None:
-    """Make the axes as high as the lines between their limits across; as they are where there are none."""
     left, right = sorted(axes.get_xlim())
-    seen: list[np.ndarray] = []
+    scale, log = axes.yaxis.get_transform(), axes.get_yscale() == "log"
+    drawn, leaning, marks = [np.empty(0)], [np.empty(0)], [np.empty(0)]
     for line in axes.lines:
-        if not line.get_transform().contains_branch(axes.transData):
+        xy = np.asarray(line.get_xydata(), dtype=float)
+        if not len(xy) or not line.get_transform().contains_branch(axes.transData):
             continue
-        x, y = (np.asarray(v, dtype=float) for v in line.get_data())
-        seen.append(y[(x >= left) & (x <= right) & np.isfinite(y)])
-        if len(x) < 2 or line.get_linestyle() in ("None", "none", ""):
-            continue
-        for edge in (left, right):  # where a line crosses an edge of what is seen
-            first = np.flatnonzero((np.minimum(x[:-1], x[1:]) < edge) & (np.maximum(x[:-1], x[1:]) > edge))
-            share = (edge - x[first]) / (x[first + 1] - x[first])
-            seen.append(y[first] + share * (y[first + 1] - y[first]))
-    values = np.concatenate([np.empty(0), *seen])
-    values = values[np.isfinite(values)]
-    if not values.size:
+        steps = np.linspace(0.0, len(xy) - 1.0, 20 * len(xy) - 19)  # between points, too: near the edges
+        x, y = (np.interp(steps, np.arange(len(xy)), values) for values in xy.T)
+        seen = (x >= left) & (x <= right) & np.isfinite(y) & (not log or y > 0.0)
+        drawn.append(scale.transform(y[seen]))
+        if len(xy) == 1:
+            marks.append(drawn[-1])
+        elif seen.any() and np.ptp(x[seen]) > UPRIGHT * (right - left):
+            leaning.append(drawn[-1])  # not families of cycles at one value, which have all amplitudes
+    heights, most, spots = map(np.concatenate, (drawn, leaning, marks))
+    if not heights.size:
         return
-    low, high = float(values.min()), float(values.max())
-    if axes.get_yscale() == "log":
-        axes.set_ylim(low / (high / low) ** 0.06, high * (high / low) ** 0.06)
+    inner = np.append(np.percentile(most if most.size else heights, MOST), spots if xlim is None else [])
+    low, high, room = heights.min(), heights.max(), np.ptp(inner)
+    if 0.0 < RUNAWAY * room < high - low:
+        low, high = max(low, inner.min() - 0.44 * room), min(high, inner.max() + 0.44 * room)
+    elif xlim is None:
         return
-    room = high - low
-    least = DRAWING.slack * max(abs(low), abs(high), TINY)  # a level line has a height of its own
-    pad = 0.06 * room if room > least else 0.05 * max(abs(low), abs(high)) or 1.0
-    limits = None if values.size < 10 else _without_runaways(values, np.empty(0))
-    axes.set_ylim(*(limits or (low - pad, high + pad)))
+    pad = 0.06 * (high - low)
+    low, high = axes.yaxis.get_major_locator().nonsingular(low - pad, high + pad)
+    axes.set_ylim(*scale.inverted().transform(np.array([low, high])))
 
 
-def _leaning(curves: list[Curve], limits: tuple[float, float]) -> np.ndarray:
-    """Heights along all branches but those that stand upright, as families of cycles at one value of the parameter, which have all amplitudes."""
-    strands = [strand for curve in curves for strand in curve.strands()]
-    least = UPRIGHT * abs(limits[1] - limits[0])
-    kept = [ys[np.isfinite(ys)] for xs, ys in strands if xs.size and np.nanmax(xs) - np.nanmin(xs) > least]
-    return np.concatenate([np.empty(0), *kept])
+class Picture:
+    """One graph on some axes.
+
+    Parameters
+    ----------
+    axes : Axes
+    graph : Graph
+    x, y : str
+        Measures.
+    labels, words, color, name, ends, inset
+        As for :func:`contvines.plots.diagram.plot_diagram`.
+    kinds : collection of str, optional
+        Kinds of special points that get marks; without, all.
+    """
+
+    def __init__(
+        self, axes: Axes, graph: Graph, x: str, y: str, *, labels: bool | Sequence[str] = True, words: bool = False,
+        color: str = "branch", name: str | None = None, kinds: Collection[str] | None = None, ends: bool = False,
+        inset: bool | Region = False,
+    ) -> None:  # fmt: skip
+        self.axes, self.graph, self.x, self.y, self.color = axes, graph, x, y, color
+        self.labels, self.words, self.kinds, self.ends, self.wanted = labels, words, kinds, ends, inset
+        known = pictures_on(axes)
+        axes.contvines_pictures = [*known, self]  # type: ignore[attr-defined]
+        self.name = (f"{name} ", "") if name else ("", "′" * len(known))  # before and after a label
+        self.first_color = sum(len(picture.graph.branches) for picture in known)
+        self.rc = rcParams.copy()
+        self.remarks = [remark] if (remark := undrawn(graph, x, y)) else []
+        self.explained: dict[str, tuple[int, Artist]] = {}  # by label: rank in the legend, what is shown
+        self.curves: list[Curve] = []
+        self.tint: dict[str, str] = {}
+        self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
+        self.written: list[Annotation] = []
+        self.inset: tuple[Picture, InsetIndicator] | None = None
+
+    def draw(self) -> None:
+        """Branches, special points, and stretches on which these cannot be distinguished."""
+        self._draw_branches()
+        self._draw_points()
+        for entry in self.graph.unresolved:
+            branch = self.graph.branches.get(entry.branch)
+            if branch is None or not 0 <= entry.index < len(branch):
+                continue
+            spot = [float(measured(branch, name)[entry.index]) for name in (self.x, self.y)]
+            if np.isfinite(spot).all():
+                look = UNRESOLVED.look("0.4", 11.0) | {"markerfacecolor": "none", "markeredgewidth": 1.0}
+                self.axes.plot(*spot, zorder=5.8, **look)
+                self._explain_mark(UNRESOLVED)
+
+    def _draw_branches(self) -> None:
+        """Each branch as curves, a run of points in one state after the other; a pale band beneath what is proved."""
+        colors = [entry.get("color", "black") for entry in rcParams["axes.prop_cycle"]]
+        words: dict[str, str] = {}
+        for i, branch in enumerate(self.graph.branches.values(), self.first_color):
+            tint = colors[i % len(colors)]
+            if self.color == "word":
+                word = str(branch.description.get("word") or branch.description.get("name", ""))
+                tint = words.setdefault(word, colors[len(words) % len(colors)])
+            self.tint[branch.label] = tint
+            xs, ys = (measured(branch, name) for name in (self.x, self.y))  # or refused in a sentence
+            for first, last, stable in branch.pieces():
+                state = STATE_OF[stable] if branch.real else "virtual"
+                tint = STATE_COLORS[state] if self.color == "stability" else tint
+                shown = line_of(state, tint if self.color == "stability" else "0.2")
+                self._explain(list(STATES).index(state), STATES[state], **shown)
+                curve = Curve(branch, self.x, self.y, first, last)
+                behind = state in ("unstable", "virtual")
+                curve.draw(self.axes, {"zorder": 2.5 if behind else 3, **line_of(state, tint)})
+                self.curves.append(curve)
+            for points, _ in proved_stretches(self.graph, branch.label):
+                width = 5.0 * float(rcParams["lines.linewidth"])
+                band = {"linewidth": width, "solid_capstyle": "butt", "zorder": 1.5, **PROVED}
+                self.axes.plot(xs[points], ys[points], **band)
+                self._explain(9, "proved", **band)
+        if self.color == "word":
+            for word, short in told_apart(words).items():
+                self._explain(7, short, color=words[word])
+
+    def _draw_points(self) -> None:
+        size = float(rcParams["lines.markersize"])
+        for point in self.graph.special.values():
+            branch = self.graph.branches.get(point.branch)
+            if branch is None or (point.kind == "end" and not self.ends):
+                continue
+            if self.kinds is not None and point.kind not in self.kinds:
+                continue
+            px, py = measure_at(branch, point, self.x), measure_at(branch, point, self.y)
+            if not (np.isfinite(px) and np.isfinite(py)):
+                continue  # such as B of a motion without impacts
+            tint = "0.15" if self.color == "stability" else self.tint[branch.label]
+            self.axes.plot([px], [py], zorder=6, **mark_of(point.kind, self.graph).look(tint, size))
+            if proof_mark(self.graph, point.label):
+                look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0, **PROVED}
+                self.axes.plot([px], [py], markersize=2.2 * size, zorder=5.5, **look)
+                self._explain(9, "proved", linewidth=6.8, solid_capstyle="butt", **PROVED)
+            self.spots.append((point.label, point.kind, px, py))
+
+    def seen(self) -> list[tuple[str, str, float, float]]:
+        """The special points within the limits; what their marks mean is added to the key."""
+        found = [spot for spot in self.spots if self._inside(*spot[2:])]
+        for _, kind, _, _ in found:
+            self._explain_mark(mark_of(kind, self.graph))
+        return found
+
+    def handles(self) -> list[Artist]:
+        """What the legend shows, in order."""
+        ranked = sorted(self.explained.values(), key=lambda entry: entry[0])
+        return [handle for _, handle in ranked] + [
+            _entry(remark, linestyle="none") for remark in self.remarks
+        ]
+
+    def _explain(self, rank: int, label: str, **look: Any) -> None:
+        self.explained.setdefault(label, (rank, _entry(label, **look)))
+
+    def _explain_mark(self, mark: Mark) -> None:
+        self._explain(8, mark.name, **mark.look("0.2", 0.9 * float(self.rc["lines.markersize"])))
+
+    def refine(self) -> None:
+        """Put points between the stored ones where lines have corners."""
+        for curve in self.curves:
+            curve.refine(self.axes)
+
+    def lay_out(self) -> None:
+        """Refine curves, draw the inset and write labels anew for the limits and the size that the axes have now."""
+        with rc_context(self.rc):
+            self.refine()
+            hold_legend(self.axes)
+            for artist in self.written:
+                artist.remove()
+            self.written = []
+            self._enlarge()
+            if self.labels is not False:
+                self._write_labels()
+
+    def follow_zoom(self) -> None:
+        """Lay out again when the limits of the axes change."""
+
+        def again(_: Axes) -> None:
+            self.wanted = self.wanted is True  # limits that were asked for were those of the first picture
+            self.lay_out()
+
+        for change in ("xlim_changed", "ylim_changed"):
+            self.axes.callbacks.connect(change, again)
+
+    def _enlarge(self) -> None:
+        """Draw a crowded place, or the one that is wanted, once more in a free part of the axes."""
+        if self.inset is not None:
+            self.inset[1].remove()
+            self.inset[0].axes.remove()
+            self.inset = None
+        spots = np.array([spot[2:] for spot in self.seen()]).reshape(-1, 2)
+        region = crowded_region(self.axes, spots) if isinstance(self.wanted, bool) else self.wanted
+        made = add_inset(self.axes, region, 0.8 * self._text()) if self.wanted and region else None
+        if region is None or made is None:
+            return
+        look: dict[str, Any] = {"words": self.words, "color": self.color, "kinds": self.kinds}
+        inset = Picture(made[0], self.graph, self.x, self.y, **look)
+        inset.name, inset.first_color, inset.rc = self.name, self.first_color, self.rc
+        inset.draw()
+        inset.axes.set(xlim=region[0], ylim=region[1])
+        inset.lay_out()
+        self.inset = inset, made[1]
+
+    def _write_labels(self) -> None:
+        chosen = None if isinstance(self.labels, bool) else list(self.labels)
+        places = {kind: i for i, kind in enumerate(BY_NAME)}  # whose labels are named first
+        wanted = [
+            Label(label.join(self.name), x, y, "black", places.get(kind, len(places)), chosen is not None)
+            for label, kind, x, y in self.seen()
+            if chosen is None or label in chosen
+        ]
+        names = self._middles(chosen)
+        if self.inset is not None:  # what the inset names is not named twice
+            inside = self.inset[0]._inside
+            wanted, names = ([e for e in found if not inside(e.x, e.y)] for found in (wanted, names))
+        if chosen is None:
+            inches = np.array(self.axes.bbox.size) / (72.0 * pixels(self.axes))
+            wanted = grouped(self.axes, wanted, named=2 if inches[0] < FEW else 3)
+            wanted.sort(key=lambda label: label.rank)
+            wanted, names = (
+                found[: int(count + more * inches.prod())]  # so many as can be read
+                for found, (count, more) in ((wanted, POINTS), (names, NAMES))
+            )
+        self.written = place_labels(self.axes, [*wanted, *names], self._text())
+
+    def _text(self) -> float:
+        """Size of the labels, in points."""
+        size = float(self.rc["font.size"])
+        return TEXT * size * (1.0 if size < 9.0 else shrinking(root(self.axes).get_size_inches()[0]))
+
+    def _inside(self, x: float, y: float) -> bool:
+        (x0, x1), (y0, y1) = sorted(self.axes.get_xlim()), sorted(self.axes.get_ylim())
+        return x0 <= x <= x1 and y0 <= y <= y1
+
+    def _middles(self, chosen: list[str] | None) -> list[Label]:
+        """A point halfway along what is seen of each branch, for its name; the longest first."""
+        if len(self.graph.branches) < 2 and not self.words and chosen is None:
+            return []
+        found: dict[str, tuple[float, Label]] = {}
+        low, high = self.axes.bbox.get_points()
+        for curve in self.curves:
+            label = curve.branch.label
+            if not curve.lines or (chosen is not None and label not in chosen):
+                continue
+            xy = np.asarray(curve.lines[0].get_xydata(), dtype=float)
+            page = self.axes.transData.transform(xy)
+            inside = np.all((low <= page) & (page <= high), axis=1)
+            steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T)) * (inside[1:] & inside[:-1])
+            total = np.concatenate([[0.0], np.cumsum(steps)])
+            if total[-1] < 12 or (label in found and total[-1] <= found[label][0]):
+                continue
+            x, y = xy[
+                np.searchsorted(total, 0.5 * total[-1])
+            ].tolist()  # never at a gap: nothing is added there
+            text = motion_name(curve.branch.description) if self.words else label.join(self.name)
+            tint = "0.25" if self.color == "stability" else self.tint[label]
+            found[label] = float(total[-1]), Label(text, x, y, tint, 0, chosen is not None, True)
+        return [label for _, label in sorted(found.values(), key=lambda entry: -entry[0])]
 
 
-def _without_runaways(
-    values: np.ndarray, marks: np.ndarray, most: np.ndarray | None = None
-) -> tuple[float, float] | None:
-    """Narrower limits where a few points, or those that are not among `most`, lie far from all others; None where all may be shown."""
-    if values.size < 10:
-        return None
-    typical = values if most is None or most.size < 10 else most
-    inner = np.concatenate([np.percentile(typical, MOST), marks])
-    low, high = float(inner.min()), float(inner.max())
-    room = high - low
-    if not room > 0.0 or float(np.ptp(values)) <= RUNAWAY * room:
-        return None
-    least, largest = float(values.min()), float(values.max())
-    return max(low - 0.5 * room, least - 0.04 * room), min(high + 0.5 * room, largest + 0.04 * room)
+def _entry(label: str, **look: Any) -> Artist:
+    return Line2D([], [], label=label, **look)
+
+
+def pictures_on(axes: Axes) -> list[Picture]:
+    """The graphs drawn on some axes."""
+    return [picture for picture in getattr(axes, "contvines_pictures", []) if picture.axes is axes]

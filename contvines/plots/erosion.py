@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from ..coexistence.erosion import Erosion
 from ..continuation.settings import hinting
 from ..graph.table import short_word
 from .figures import Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..coexistence.erosion import Erosion
 
 KICK, SHARE = "#2a6f97", "#e9a23b"
 

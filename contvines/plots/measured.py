@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
-from .figures import Size, Style, drawing, settle
+from .figures import Size, Style, drawing
 from .legends import place_legend
-from .style import axis_label
+from .style import BARE, BLUE, RED, axis_label
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-OURS, BARE, DATA = "#0b3c6f", "0.55", "#b5121b"
+BESIDE: dict[str, Any] = {"color": BARE, "linestyle": (0, (4, 1.5))}
 PLAIN = (-2, 3)  # powers of ten that ticks show in full
 
 
@@ -42,8 +41,6 @@ def plot_transient(
     axes, legend, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """
-    from matplotlib import rcParams
-
     (clock, second, time), *curves = series
     name, unit, _ = curves[0]
     compared = any(what.startswith("bare") for what, _, _ in curves)
@@ -52,21 +49,19 @@ def plot_transient(
         for what, _, values in curves:
             if what.startswith("relative"):
                 continue
-            bare = what.startswith("bare")
-            look: dict[str, Any] = (
-                {"color": BARE, "linestyle": (0, (4, 1.5)), "zorder": 1.9} if bare else {"color": OURS}
-            )
-            label = "without absorber" if bare else "with absorber" if compared else what.replace("_", " ")
-            axes.plot(time, values, linewidth=thin, label=label, **look)
+            label = "with absorber" if compared else what.replace("_", " ")
+            look: dict[str, Any] = {"color": BLUE, "label": label}
+            if what.startswith("bare"):
+                look = {**BESIDE, "label": "without absorber", "zorder": 1.9}
+            axes.plot(time, values, linewidth=thin, **look)
         if hits is not None and hits.size:
-            low = np.full(hits.size, 0.02)
-            ticks: dict[str, Any] = {"marker": "|", "linestyle": "none", "color": DATA, "label": "impacts"}
-            axes.plot(hits, low, transform=axes.get_xaxis_transform(), **ticks)
+            ticks: dict[str, Any] = {"marker": "|", "linestyle": "none", "color": RED, "label": "impacts"}
+            axes.plot(hits, np.full(hits.size, 0.02), transform=axes.get_xaxis_transform(), **ticks)
         axes.set(xlabel=axis_label(clock, unit=second), ylabel=axis_label(name, unit=unit))
         if name == "energy":
             axes.set(yscale="log", ylabel="energy / initial energy")
         axes.margins(x=0.0)
-        _finish(figure, axes, legend, own)
+        place_legend(axes, None, legend, own, usual="below")
     return figure
 
 
@@ -92,24 +87,20 @@ def plot_densities(
     axes, figsize, style
         As for `plot_transient`.
     """
-    looks = {
-        "bare": (BARE, (0, (4, 1.5)), "without absorber"),
-        "tuned": (DATA, (0, (1, 1.6)), "tuned absorber"),
+    looks: dict[str, dict[str, Any]] = {
+        "bare": {**BESIDE, "label": "without absorber"},
+        "tuned": {"color": RED, "linestyle": (0, (1, 1.6)), "label": "tuned absorber"},
     }
     with drawing(axes, style, figsize) as (figure, axes, own):
-        colors = iter([OURS, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))
+        colors = iter([BLUE, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))
         for name, (values, _) in densities.items():
             label = "with absorber" if name == "oscillator" else name
-            color, line, label = looks.get(name) or (next(colors), "-", label)
-            axes.plot(frequencies, values, color=color, linestyle=line, label=label)
+            axes.plot(frequencies, values, **(looks.get(name) or {"color": next(colors), "label": label}))
         units = {shown for _, shown in densities.values()}
-        axes.set(
-            yscale="log",
-            xlabel=axis_label("frequency", unit=unit),
-            ylabel=axis_label("density of the response", unit=units.pop() if len(units) == 1 else None),
-        )
+        up = axis_label("density of the response", unit=units.pop() if len(units) == 1 else None)
+        axes.set(yscale="log", xlabel=axis_label("frequency", unit=unit), ylabel=up)
         axes.margins(x=0.0)
-        _finish(figure, axes, True, own)
+        place_legend(axes, None, True, own, usual="below")
     return figure
 
 
@@ -143,22 +134,11 @@ def plot_calibration(
     with drawing(axes, style, figsize) as (figure, axes, own):
         if heights is None:
             axes.axhline(0.0, color="0.6", linewidth=0.8)
-            axes.plot(places, -residuals, linestyle="none", marker="o", color=OURS)
+            axes.plot(places, -residuals, linestyle="none", marker="o", color=BLUE)
         else:
-            axes.plot(places, heights, linestyle="none", marker="o", color=DATA, mfc="none", label="measured")
-            axes.plot(places, heights + residuals, color=OURS, label="with the estimate")
+            axes.plot(places, heights, linestyle="none", marker="o", color=RED, mfc="none", label="measured")
+            axes.plot(places, heights + residuals, color=BLUE, label="with the estimate")
         axes.set(xlabel=xlabel, ylabel=ylabel)
         axes.ticklabel_format(axis="y", scilimits=PLAIN)
-        _finish(figure, axes, legend, own)
+        place_legend(axes, None, legend, own, usual="below")
     return figure
-
-
-def _finish(figure: Figure, axes: Axes, legend: bool | str, own: bool) -> None:
-    place_legend(axes, None, legend, own, usual="below")
-    if own:
-        settle(figure)
-        label = axes.yaxis.label
-        if label.get_window_extent().height > axes.bbox.height:  # two lines where one is longer than the axis
-            words = label.get_text().split()
-            halves = [(" ".join(words[:k]), " ".join(words[k:])) for k in range(len(words))]
-            axes.set_ylabel("\n".join(min(halves, key=lambda pair: abs(len(pair[0]) - len(pair[1])))))

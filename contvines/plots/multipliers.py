@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from ..branches.branch import Branch
 from ..continuation.settings import hinting
 from ..problems.abilities import notation_of
-from .figures import Size, Style, narrower, panels, root
+from .figures import Size, Style, panels, root
 from .legends import place_legend
-from .settings import DRAWING
-from .style import axis_label
+from .style import BLUE, RED, axis_label
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..branches.branch import Branch
-
-COLORS = ("#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#a6611a", "#017a79")
+COLORS = (BLUE, RED, "#1b7837", "#7b3294", "#a6611a", "#017a79")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)))
+SHOWN = 1e-4, 1e4  # sizes of multipliers: a graze sends one to infinity
 MOST = 12  # curves drawn: the largest ones
-NARROW = 5.5  # inches: in a narrower figure the two panels stand under one another
-LOW = 3.4  # inches: a lower narrow figure has no room for the plane
 
 
 @hinting
@@ -56,33 +51,25 @@ def plot_multipliers(
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
     flow = branch.problem is not None and branch.problem.spectrum == "flow"
-    size = figsize or (8.6, 4.0)
-
-    def arranged(figure: Figure) -> Sequence[Axes]:
-        if size[0] >= NARROW:
-            return figure.subplots(1, 2, width_ratios=(1.25, 1))
-        if size[1] < LOW:
-            return [figure.add_subplot()]  # no room for the plane as well
-        return figure.subplots(2, 1, height_ratios=(1, 1.25))
-
-    with panels(axes, (1, 2), "the multipliers are drawn on", arranged, size, style) as (figure, drawn):
-        _sizes(drawn[0], branch, spectrum, flow, legend)
+    beside = {"mosaic": "ab", "width_ratios": (1.25, 1)}
+    below = {"mosaic": "a;b", "height_ratios": (1, 1.25)}
+    what, size = "the multipliers are drawn on", figsize or (8.6, 4.0)
+    with panels(axes, (1, 2), what, size, style, beside, below) as (figure, drawn):
+        unit = (branch.description.get("units") or {}).get(branch.parameter)
+        label = axis_label(branch.parameter, unit, notation_of(branch.problem))
+        _sizes(drawn[0], branch, spectrum, flow)
+        drawn[0].set_xlabel(label)
+        if spectrum.shape[1] > 1:
+            place_legend(drawn[0], None, legend, len(drawn) == 1 and axes is None)
         if len(drawn) == 2:
-            _plane(drawn[1], branch, spectrum, flow)
+            _plane(drawn[1], branch, spectrum, flow, label)
     return figure
 
 
-def parameter_label(branch: Branch) -> str:
-    """The label of the parameter's axis."""
-    unit = (branch.description.get("units") or {}).get(branch.parameter)
-    return axis_label(branch.parameter, unit=unit, notation=notation_of(branch.problem))
-
-
-def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend: bool | str) -> None:
+def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
     size = np.real(spectrum) if flow else np.abs(spectrum)
-    ranked = np.take_along_axis(size, np.argsort(-size, axis=1), axis=1)
-    drawn = min(spectrum.shape[1], MOST)
-    for j in range(drawn):
+    ranked = -np.sort(-size, axis=1)
+    for j in range(min(spectrum.shape[1], MOST)):
         label = "largest" if j == 0 else "smallest" if j == spectrum.shape[1] - 1 else f"{j + 1}."
         look = {"color": COLORS[j % len(COLORS)], "linestyle": DASHES[j % len(DASHES)]}
         axes.plot(branch.values, ranked[:, j], label=label, **look)
@@ -90,19 +77,12 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend:
     if not flow and np.nanmax(ranked) > 20:
         axes.set_yscale("log")
         low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
-        axes.set_ylim(max(low, DRAWING.smallest) / 1.5, min(high, DRAWING.largest) * 1.5)
-    axes.set(xlabel=parameter_label(branch), ylabel=r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
-    what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
-    if legend is True and drawn > 1 and narrower(axes, NARROW):
-        above = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "title": what, "alignment": "left"}
-        axes.legend(ncols=4, frameon=False, borderpad=0.0, handlelength=1.4, columnspacing=0.9, **above)
-        return
-    axes.set_title(what)
-    if drawn > 1:
-        place_legend(axes, None, legend, False)
+        axes.set_ylim(max(low, SHOWN[0]) / 1.5, min(high, SHOWN[1]) * 1.5)
+    axes.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
+    axes.set_title(f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size")
 
 
-def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
+def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, label: str) -> None:
     if flow:
         axes.axvline(0, color="black", linewidth=0.9)
     else:
@@ -110,15 +90,13 @@ def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
         axes.plot(np.cos(angle), np.sin(angle), color="black", linewidth=0.9)
     flat = spectrum.ravel()
     where = np.repeat(branch.values, spectrum.shape[1])
-    reach = 1.15 if flow else min(max(1.6, np.nanpercentile(np.abs(flat), 75) * 1.2), 4.0)
+    reach = min(max(1.6, np.nanpercentile(np.abs(flat), 75) * 1.2), 4.0)
     shown = np.isfinite(flat) if flow else np.abs(flat) <= reach * 1.05
     x, y = np.real(flat)[shown], np.imag(flat)[shown]
     dots = axes.scatter(x, y, c=where[shown], s=9, cmap="viridis_r", zorder=3)
     if not flow:
         axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
-    bar = root(axes).colorbar(dots, ax=axes, shrink=0.85)
-    bar.set_label(parameter_label(branch))
+    root(axes).colorbar(dots, ax=axes, shrink=0.85, label=label)
     axes.set(xlabel=r"Re $\lambda$", ylabel=r"Im $\lambda$")
     hidden = int((~shown).sum())
-    apart = "\n" if narrower(axes, NARROW) else " "
-    axes.set_title(f"the complex plane{apart}({hidden} outside)" if hidden else "the complex plane")
+    axes.set_title(f"the complex plane ({hidden} outside)" if hidden else "the complex plane", wrap=True)

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
+from matplotlib.text import Text
 
+from ..branches.branch import Branch
 from ..continuation.settings import hinting
+from ..graph.graph import Graph
 from ..graph.table import short_word
-from .figures import Size, Style, freeze, new_axes, settle, styled
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.text import Text
-    from matplotlib.transforms import Bbox
-
-    from ..branches.branch import Branch
-    from ..graph.graph import Graph
+from .figures import Size, Style, drawing, fit, settle
+from .labels import Ground
 
 COLUMNS = 6  # at most, side by side
 ASIDE = 0.42  # columns: how far beside its column a bent arrow runs
@@ -44,24 +40,18 @@ def plot_network(
     axes, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`; without a size the figure is as large as the graph needs.
     """
-    from matplotlib.patches import FancyArrowPatch
-
     layers = _layers(graph)
     place = _places(layers, COLUMNS)
-    wide, low, top = _extent(place)
-    needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * (top - low + 1) + 0.6))
-    with styled(style):
-        figure, axes = new_axes(axes, figsize or needed)
-        extent = axes.get_window_extent()
-        across, up = extent.width / figure.dpi, extent.height / figure.dpi
+    wide, high = _extent(place)
+    needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6))
+    with drawing(axes, style, figsize or needed) as (figure, axes, own):
+        across, up = np.array(axes.bbox.size) / figure.dpi
         # boxes with labels alone, as many side by side as leave room for arrows
-        compact = across < 0.8 * needed[0] and (figsize is not None or figure.axes != [axes])
+        compact = across < 0.8 * needed[0] and (figsize is not None or not own)
         size = 6.0 if compact else 8.0
         if compact:
             columns = int(min(COLUMNS, max(2, across / COMPACT)))
             place = _places(_that_fit(layers, columns, up / ROW), columns)
-            wide, low, top = _extent(place)
-        axes.set_axis_off()
         boxes = {label: _box(axes, graph.branches[label], at, size, compact) for label, at in place.items()}
         if graph.branches:
             computed = any(branch.stable is not None for branch in graph.branches.values())
@@ -70,12 +60,13 @@ def plot_network(
             further = f"; {less} more further on" if less else further
             grey = "grey: partly stable" if computed else "stability not computed"
             axes.set_title(f"{grey}; dotted: virtual{further}", fontsize=size)
+        axes.set_axis_off()
+        x, y = np.array([*place.values()] or [(0.0, 0.0)]).T
         aside = (0.15, 0.2) if compact else (0.0, 0.0)
-        axes.set(xlim=(-0.5 - aside[0], wide - 0.5 + aside[1]), ylim=(low - 0.6, top + 0.6))
+        axes.set(xlim=(-0.5 - aside[0], x.max() + 0.5 + aside[1]), ylim=(y.min() - 0.6, y.max() + 0.6))
+        if own:
+            fit(figure, frozen=True)
         settle(figure)
-        if figure.axes == [axes]:
-            freeze(figure)
-        taken = [box.get_window_extent() for box in boxes.values()]
         for (source, target), (labels, both) in _pairs(graph).items():
             if source not in place or target not in place:
                 continue
@@ -85,11 +76,8 @@ def plot_network(
             look |= {"arrowstyle": "<|-|>" if both else "-|>", "connectionstyle": f"arc3,rad={bend}"}
             axes.add_patch(FancyArrowPatch(place[source], place[target], **look))
             beside = compact and bend == 0.0 and place[source][0] == place[target][0]  # a short arrow
-            look = {"ha": "left" if beside else "center", "va": "center", "fontsize": size, "zorder": 4}
-            white = {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"}
-            written = axes.text(0.0, 0.0, ", ".join(labels), bbox=white, **look)
             ends = axes.transData.transform([place[source], place[target]])
-            _stand(written, axes, ends, bend, 0.06 if beside else 0.0, taken)
+            _write(axes, ", ".join(labels), ends, bend, size, 0.06 if beside else 0.0)
     return figure
 
 
@@ -101,26 +89,27 @@ def _box(axes: Axes, branch: Branch, at: tuple[float, float], size: float, compa
     return axes.text(*at, text, ha="center", va="center", fontsize=size, bbox=look)
 
 
-def _stand(written: Text, axes: Axes, ends: np.ndarray, bend: float, aside: float, taken: list[Bbox]) -> None:
+def _write(axes: Axes, text: str, ends: np.ndarray, bend: float, size: float, aside: float) -> None:
     """Put a label on its arrow where it covers no box and no other label, else in the arrow's middle."""
-    (dx, dy), found = ends[1] - ends[0], []
+    ground, white = Ground(axes), {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"}
+    look = {"ha": "left" if aside else "center", "va": "center", "fontsize": size, "bbox": white, "zorder": 4}
+    written = axes.text(0.0, 0.0, text, **look)
+    (dx, dy), t = ends[1] - ends[0], np.array(ALONG)[:, None]
     corner = ends.mean(axis=0) + bend * np.array([dy, -dx])
-    for t in ALONG:
-        on = (1 - t) ** 2 * ends[0] + 2 * t * (1 - t) * corner + t**2 * ends[1]
-        x, y = axes.transData.inverted().transform(on)
+    on = (1 - t) ** 2 * ends[0] + 2 * t * (1 - t) * corner + t**2 * ends[1]
+    covered = []
+    for x, y in axes.transData.inverted().transform(on):
         written.set_position((x + aside, y))
-        box = written.get_window_extent()
-        found.append((any(box.overlaps(other) for other in taken), len(found), (x + aside, y), box))
-    _, _, position, box = min(found, key=lambda entry: entry[:2])
-    written.set_position(position)
-    taken.append(box)
+        covered.append(
+            (ground.covered(written.get_window_extent().extents)[0] > 0.0, len(covered), (x + aside, y))
+        )
+    written.set_position(min(covered)[2])
 
 
 def _that_fit(layers: list[list[str]], columns: int, rows: float) -> list[list[str]]:
     """The first layers, as many as find room in so many rows; of a single one that does not, the first labels."""
     for count in range(len(layers), 0, -1):
-        _, low, top = _extent(_places(layers[:count], columns))
-        if top - low + 1 <= rows:
+        if _extent(_places(layers[:count], columns))[1] <= rows:
             return layers[:count]
     return [layers[0][: max(int(rows), 1)]] if layers else []
 
@@ -157,59 +146,51 @@ def _bend(axes: Axes, place: Places, source: str, target: str) -> float:
     return 0.0
 
 
-def _extent(place: Places) -> tuple[int, float, float]:
-    """How many columns there are, the lowest and the highest row."""
+def _extent(place: Places) -> tuple[float, float]:
+    """How many columns there are, and how many rows."""
     x, y = np.array([*place.values()] or [(0.0, 0.0)]).T
-    return round(x.max()) + 1, float(y.min()), float(y.max())
+    return float(x.max()) + 1.0, float(np.ptp(y)) + 1.0
 
 
 def _layers(graph: Graph) -> list[list[str]]:
     """Labels by the number of switches that lead to them, each layer in the graph's order."""
     depth: dict[str, int] = {}
     for label in graph.branches:
-        front = [] if label in depth else [label]
-        depth.setdefault(label, 0)
+        front = set() if label in depth else {label}
+        steps = 0
         while front:
-            pairs = [(s.source, s.target) for s in graph.switches if s.source in front]
-            found = {t: depth[s] + 1 for s, t in pairs if t in graph.branches and t not in depth}
-            depth |= found
-            front = list(found)
-    layers: list[list[str]] = [[] for _ in range(max(depth.values(), default=-1) + 1)]
-    for label in graph.branches:
-        layers[depth[label]].append(label)
-    return layers
+            depth |= dict.fromkeys(front, steps)
+            reached = {s.target for s in graph.switches if s.source in front and s.target in graph.branches}
+            front, steps = reached - set(depth), steps + 1
+    return [
+        [label for label in graph.branches if depth[label] == k]
+        for k in range(max(depth.values(), default=-1) + 1)
+    ]
 
 
 def _places(layers: list[list[str]], columns: int) -> Places:
     """Where each box stands: layers as columns, so many of them in a band, the bands below one another."""
     place: Places = {}
-    middle = 0.0
+    top = 0
     for first in range(0, len(layers), columns):
         band = layers[first : first + columns]
-        half = (max(map(len, band)) - 1) / 2
-        middle -= half if first else 0.0
-        back = first // columns % 2 == 1
+        height = max(map(len, band))
         for column, labels in enumerate(band):
+            px = columns - 1 - column if first // columns % 2 else column
             for i, label in enumerate(labels):
-                px = columns - 1 - column if back else column
-                place[label] = (float(px), middle - (i - (len(labels) - 1) / 2))
-        middle -= half + 1.0
+                place[label] = float(px), top - 0.5 * (height - len(labels)) - i
+        top -= height
     return place
-
-
-def _range(low: float, high: float) -> str:
-    """Two numbers with as many digits as tell them apart, at least four."""
-    for digits in range(4, 17):
-        texts = f"{low:.{digits}g}", f"{high:.{digits}g}"
-        if texts[0] != texts[1]:
-            return " to ".join(texts)
-    return f"{low:.4g}"
 
 
 def _caption(branch: Branch) -> str:
     about = branch.description
     word = short_word(about["word"] or about.get("name", ""), 18) if "word" in about else ""
     periods = about.get("periods")
-    cycles = f"  k={periods}" if periods else ""
-    what = f"  {word}" if word else ""
-    return f"{branch.label}{what}{cycles}\n{branch.parameter} {_range(*branch.range)}"
+    named = "  ".join([branch.label, *filter(None, [word, f"k={periods}" if periods else ""])])
+    ends = [f"{end:.4g}" for end in branch.range]
+    for digits in range(5, 17):  # as many as tell them apart
+        if ends[0] != ends[1]:
+            break
+        ends = [f"{end:.{digits}g}" for end in branch.range]
+    return f"{named}\n{branch.parameter} {' to '.join(ends if ends[0] != ends[1] else ends[:1])}"

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from contvines.shared.near_names import did_you_mean
 
 from ..problems.abilities import Drawable
-from .figures import Size, Style, new_axes, styled
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from .figures import Size, Style, drawing
+from .style import BLUE
 
 
 def plot_portrait(
@@ -43,12 +40,11 @@ def plot_portrait(
             f"this picture has no argument {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
         )
     points = np.atleast_2d(np.asarray(getattr(orbit, "points", getattr(orbit, "u", orbit)), float))
-    with styled(style):
-        figure, axes = new_axes(axes, figsize or (4.6, 4.0))
+    with drawing(axes, style, figsize or (4.6, 4.0)) as (figure, axes, _):
         if points.shape[0] > 1 and points.shape[1] == 2:
-            axes.plot(*points.T, "o", color="#0b3c6f")
+            axes.plot(*points.T, "o", color=BLUE)
             axes.set(xlabel="$x_1$", ylabel="$x_2$")
         else:
-            axes.plot(np.arange(points.size), points.ravel(), "o-", color="#0b3c6f")
+            axes.plot(points.ravel(), "o-", color=BLUE)
             axes.set(xlabel="entry", ylabel="value")
     return figure

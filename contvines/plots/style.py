@@ -1,5 +1,7 @@
 """What things look like in every picture: line styles, marks of special points, names of axes."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,13 +12,29 @@ from ..bifurcation.kinds import BY_NAME
 if TYPE_CHECKING:
     from ..graph.graph import Graph
     from ..loci.locus import Locus
+    from ..survey.results import Survey
 
 # line styles of the states of an orbit; what nobody has asked for is drawn solid, and named
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
 WIDTHS = {"stable": 1.25, "unknown": 1.1, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
-STATE_COLORS = {"stable": "#0b3c6f", "unknown": "#4d4d4d", "unstable": "#d9484b", "virtual": "#8a8a8a"}
+BLUE, RED, BARE = "#0b3c6f", "#b5121b", "0.55"  # ours, what is measured or failed, what is compared with
+STATE_COLORS = {"stable": BLUE, "unknown": "#4d4d4d", "unstable": "#d9484b", "virtual": "#8a8a8a"}
 HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")  # told apart without colours
 PROVED = {"color": "#7fc97f", "alpha": 0.45}  # beneath what is proved
+LOCI = {  # colours by kind
+    "fold": BLUE,
+    "symmetry-breaking": "#1b7f4b",
+    "branch-point": "#5b8c1a",
+    "period-doubling": "#c2410c",
+    "neimark-sacker": "#7c3aed",
+    "hopf": "#7c3aed",
+}
+BORDERS = {  # borders share one family
+    "wall-graze": "#8b5e3c",
+    "velocity-graze": "#4b5563",
+    "stick": "#a3861a",
+    "vanishing-event": "#a21caf",
+}
 STATES = {
     "stable": "stable",
     "unknown": "stability not computed",
@@ -57,7 +75,7 @@ LIMITS = {  # of cycles of a long period
 UNRESOLVED = Mark("unresolved", "s")
 
 
-def mark_of_locus(locus: "Locus") -> Mark:
+def mark_of_locus(locus: Locus) -> Mark:
     """That of its special points, called after what they are."""
     mark = MARKS.get(locus.kind, PLAIN)
     return replace(mark, name=LIMITS.get(locus.limit, mark.name))
@@ -71,31 +89,33 @@ def line_of(state: str, color: str) -> dict[str, Any]:
     return {"color": color, "linestyle": LINES[state], "linewidth": width}
 
 
-def mark_of(kind: str, graph: "Graph") -> Mark:
+def mark_of(kind: str, graph: Graph) -> Mark:
     """How a kind of special point of a graph is drawn, one of the user's own included."""
     own = graph.own_kinds.get(kind)
     return Mark(own.text, own.marker, own.filled) if own else MARKS.get(kind, PLAIN)
 
 
-def axis_label(
-    name: str, short: bool = False, unit: str | None = None, notation: Mapping[str, str] | None = None
-) -> str:
+def axis_label(name: str, unit: str | None = None, notation: Mapping[str, str] | None = None) -> str:
     """Label of the axis of a parameter or measure.
 
     Parameters
     ----------
     name : str
-    short : bool
-        Only the symbol of a label that has one; with a unit the name.
     unit : str, optional
     notation : mapping, optional
         Labels by name, as the machine drawn writes them; other names are shown as they are.
     """
-    plain = name.replace("_", " ")
-    label = (notation or {}).get(name, plain)
-    if unit:
-        raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
-        return f"{plain if short else label} [{raised}]"
-    if short and "$" in label:
-        return label[label.index("$") : label.rindex("$") + 1]
-    return label
+    label = (notation or {}).get(name, name.replace("_", " "))
+    raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit or "")
+    return f"{label} [{raised}]" if unit else label
+
+
+def label_of(survey: Survey, name: str) -> str:
+    """Label of the axis of a survey: outcomes in words."""
+    words = {
+        "peak": "largest response, worst of the coexisting",
+        "lower_peak": "largest response, best of the coexisting",
+        "peak_at": "where the largest response is",
+        "covered": "share of the interval with a stable response",
+    }
+    return axis_label(name, survey.units.get(name), {**survey.notation, **words})

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
+from ..graph.graph import Graph
 from .diagram import draw_diagram
-from .figures import Size, Style, is_low, narrower, new_axes, settle, styled, thin_ticks
-from .legends import NARROW, Key, draw_legend
+from .figures import Size, Style, drawing, narrower
+from .legends import NARROW, draw_legend
 from .style import axis_label
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..graph.graph import Graph
 
 Dots = Sequence[tuple[float, float]]
 Band = tuple[float, float, float, float]
@@ -57,41 +53,36 @@ def plot_sweep(
     units : of the parameter and the measure by name, where they have some.
     notation : labels of axes by name of parameter or measure; the graph's by default.
     """
-    said = dict(units or {})
+    said, impacts = dict(units or {}), measure == "B"
     if notation is None and graph is not None:
         notation = graph.notation
-    at = ("B at every impact" if graph is None else "B at the first impact") if measure == "B" else ""
-    size = 2.4 if measure == "B" else 3.0
-    own = axes is None
-    with styled(style):
-        figure, axes = new_axes(axes, figsize)
-        above = 3.5 if measure != "B" or graph is not None else 2.0
-        dark = "0.45" if measure == "B" and graph is None else "black"
+    with drawing(axes, style, figsize) as (figure, axes, own):
+        at = "" if not impacts else "B at every impact" if graph is None else "B at the first impact"
         narrow = own and narrower(axes, NARROW)  # the axis says what it is of
-        told = f"simulated: {at or 'periodic'}" if not narrow or measure != "B" else "simulated"
-        lost = {"markersize": 1.5} if measure == "B" else {"marker": "o", "markersize": 2.6, "mfc": "none"}
-        _dots(axes, wandering, "simulated: not periodic", color=WANDERING, zorder=1.8, **lost)
+        told = "simulated" if narrow and impacts else f"simulated: {at or 'periodic'}"
+        lost = {"markersize": 1.5} if impacts else {"marker": "o", "markersize": 2.6, "mfc": "none"}
+        alone = impacts and graph is None
+        main = {"color": "0.45", "zorder": 2.0} if alone else {"color": "black", "zorder": 3.5}
+        size = 2.4 if impacts else 3.0
+        for dots, label, look in (
+            (wandering, "simulated: not periodic", {"color": WANDERING, "zorder": 1.8, **lost}),
+            (others, "simulated: B at other impacts", {"color": "0.72", "zorder": 1.9, "markersize": size}),
+            (points, told, {"markersize": size, **main}),
+        ):
+            if len(dots):
+                style_of = {"linestyle": "none", "marker": ".", "label": label, **look}
+                axes.plot(*np.array(dots, float).reshape(-1, 2).T, **style_of)
         draw_bands(axes, bands)
-        _dots(axes, others, "simulated: B at other impacts", color="0.72", zorder=1.9, markersize=size)
-        _dots(axes, points, told, color=dark, zorder=above, markersize=size)
         if not any(len(dots) for dots in (points, others, wandering)):
-            what = "no impacts" if measure == "B" else "nothing"
-            axes.plot([], [], linestyle="none", label=f"simulated: {what}")
-        low = own and is_low(axes)
+            axes.plot([], [], ls="none", label=f"simulated: {'no impacts' if impacts else 'nothing'}")
         unit = f" [{said['B']}]" if "B" in said else ""
-        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter), notation=notation))
-        axes.set_ylabel(
-            f"$B$ at the impacts{unit}"
-            if measure == "B"
-            else axis_label(measure, low, said.get(measure), notation)
-        )
+        axes.set_xlabel(axis_label(parameter, said.get(parameter), notation))
+        up = axis_label(measure, said.get(measure), notation)
+        axes.set_ylabel(f"$B$ at the impacts{unit}" if impacts else up)
         if graph is not None:
             draw_diagram(axes, graph, parameter, measure, own, legend=legend)
-            return figure
-        draw_legend(axes, Key(), legend, own, np.empty((0, 2)))
-        if own:
-            settle(figure)
-            thin_ticks(axes)
+        else:
+            draw_legend(axes, [], legend, own)
     return figure
 
 
@@ -102,10 +93,3 @@ def draw_bands(axes: Axes, bands: Sequence[Band], color: str = WANDERING) -> Non
         look = {"color": color, "alpha": 0.35, "lw": 2.5, "zorder": 1.5}
         axes.vlines(values, low, high, label="modulated, by period", **look)
         axes.plot(values, mean, "_", color=color, markersize=4, zorder=1.6)
-
-
-def _dots(axes: Axes, dots: Dots, label: str, **style: object) -> None:
-    """One kind of dots; none, and no entry in the legend, where there are none."""
-    if len(dots):
-        values = np.array(dots, float).reshape(-1, 2)
-        axes.plot(values[:, 0], values[:, 1], **{"linestyle": "none", "marker": ".", "label": label, **style})

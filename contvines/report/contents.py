@@ -13,9 +13,7 @@ from ..continuation.settings import Settings
 from ..graph.contents import proof_mark, proof_text
 from ..graph.stretches import default_measure
 from ..graph.table import motion_name, short_word
-from ..plots.chart import COLORS
-from ..plots.style import mark_of, mark_of_locus
-from ..plots.survey import label_of
+from ..plots.style import LOCI, axis_label, label_of, mark_of, mark_of_locus
 from ..problems.abilities import Animated
 from ..shared.motions import attracts, onto_axis, onto_circle
 
@@ -194,7 +192,7 @@ def _locus(locus: Locus) -> dict[str, Any]:
         "label": locus.label,
         "name": mark_of_locus(locus).name,
         "marker": mark_of_locus(locus).marker,
-        "border": locus.kind not in COLORS,
+        "border": locus.kind not in LOCI,
         "word": None if word is None else short_word(str(word)),
         "p": shortened(locus.values[:, 0], 12),
         "q": shortened(locus.values[:, 1], 12),
@@ -312,7 +310,6 @@ def rounded(value: object) -> object:
 def heading(result: Graph | Chart, source: str, names: Iterable[str]) -> dict[str, Any]:
     """What every page of a graph or chart says: versions, model, settings, state, and these names as labels of axes."""
     from .. import __version__
-    from ..plots.style import axis_label
 
     model = {str(k): v for k, v in result.model.items() if not isinstance(v, dict | list)}
     if "page" in model:  # not where it lay

@@ -5,6 +5,7 @@ The options that every picture takes are those of :func:`contvines.plots.diagram
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -12,23 +13,33 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
+import numpy as np
+
 from .near_names import did_you_mean
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
+
+Style = str | Mapping[str, Any] | None
+"""A style of ours or of matplotlib's, or rcParams: see :func:`styled`."""
+Size = tuple[float, float] | None
+"""Inches across and upright."""
 
 HOUSE = Path(__file__).with_name("house.mplstyle")
 STYLES = {path.stem: path for path in Path(__file__).with_name("styles").glob("*.mplstyle")}
 """Styles of ours, by name: journals, print without colours, slides."""
 FULL_WIDTH = 6.5  # inches; in narrower figures texts, marks and lines shrink
+NARROW, LOW = 5.5, 3.4  # inches: of a picture with several panels
 SMALLEST = 0.72  # but not below this share
 WINDOWLESS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends
 
 
 @contextmanager
-def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
+def styled(style: Style = None) -> Iterator[None]:
     """Draw in the package's style; what the user has set, and `style`, come before it; settings stay as they were.
 
     Parameters
@@ -73,7 +84,7 @@ def shrinking(width: float) -> float:
     return float(min(1.0, max(SMALLEST, width / FULL_WIDTH)))
 
 
-def new_figure(figsize: tuple[float, float] | None = None, **options: Any) -> Figure:
+def new_figure(figsize: Size = None, **options: Any) -> Figure:
     """A figure that pyplot does not keep: notebooks show it once, as the value of a cell, and nothing piles up.
 
     Where pyplot shows windows it is one of pyplot's. In a figure narrower than `FULL_WIDTH` all text is smaller.
@@ -97,6 +108,173 @@ def new_figure(figsize: tuple[float, float] | None = None, **options: Any) -> Fi
     made = _picture_class()(figsize=figsize, **options)
     FigureCanvasAgg(made)
     return made
+
+
+def root(axes: Axes) -> Figure:
+    """The figure that axes stand on, also where they are in a part of it."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return figure
+
+
+@contextmanager
+def drawing(axes: Axes | None, style: Style, figsize: Size = None) -> Iterator[tuple[Figure, Axes, bool]]:
+    """Figure and axes to draw on in a style, and whether they are new: new ones are given their place at the end."""
+    with panels(axes, (1,), "this is drawn on", figsize, style, {"mosaic": "a"}) as (figure, (drawn,)):
+        yield figure, drawn, axes is None
+
+
+@contextmanager
+def panels(
+    axes: Axes | Sequence[Axes] | None,
+    counts: Sequence[int],
+    what: str,
+    figsize: Size,
+    style: Style,
+    wide: Mapping[str, Any],
+    narrow: Mapping[str, Any] | None = None,
+) -> Iterator[tuple[Figure, list[Axes]]]:
+    """A figure and the panels to draw on in a style; new ones are given their place at the end.
+
+    Parameters
+    ----------
+    axes : those that the user gives, or None for a new figure
+    counts : how many may be given
+    what : the beginning of the sentence that refuses another number
+    figsize, style
+        Of a new figure.
+    wide, narrow : mapping
+        Arguments of `subplot_mosaic` in a new figure; the panels come in the order of their names. With `narrow` a narrow figure
+        has these, and one that is low, too, has room for the first one alone.
+
+    Raises
+    ------
+    ValueError
+        If `axes` are not one of so many.
+    """
+    with styled(style):
+        if axes is not None:
+            given: list[Axes] = list(np.atleast_1d(np.asarray(axes, dtype=object)))
+            if len(given) not in counts:
+                wanted = " or ".join(map(str, counts))
+                raise ValueError(
+                    f"axes: {what} {wanted} axes, not {len(given)}; for example plt.subplots(1, {counts[-1]})[1]"
+                )
+            yield root(given[0]), given
+            return
+        figure = new_figure(figsize=figsize)
+        across, up = figure.get_size_inches()
+        small = narrow is not None and across < NARROW
+        chosen: Mapping[str, Any] = (narrow or {}) if small else wide
+        made: dict[Any, Axes] = figure.subplot_mosaic(**({"mosaic": "a"} if small and up < LOW else chosen))
+        _prepare(*made.values())
+        yield figure, [made[name] for name in sorted(made)]
+        if not is_frozen(figure):
+            fit(figure)
+
+
+def fit(figure: Figure, frozen: bool = False) -> None:
+    """Give all in a figure of ours its place: long labels on several lines, fewer ticks where their labels would touch.
+
+    What is `frozen` is not laid out again, unless it is in a window.
+    """
+    _prepare(*(axes for axes in figure.axes if not axes.yaxis.label.get_wrap()))
+    settle(figure)
+    thin_ticks(*figure.axes)
+    if frozen and not windows():
+        figure.set_layout_engine("none")
+
+
+def _prepare(*drawn: Axes) -> None:
+    """Let long labels have several lines; how many ticks there are must not change when a figure is drawn again elsewhere."""
+    from matplotlib import rcParams
+    from matplotlib.font_manager import FontProperties
+
+    for axes in drawn:
+        sizes = rcParams["xtick.labelsize"], rcParams["ytick.labelsize"]
+        for axis, size in zip((axes.xaxis, axes.yaxis), sizes):
+            axis.label.set_wrap(True)
+            axis.set_tick_params(labelsize=FontProperties(size=size).get_size_in_points())
+
+
+def is_frozen(figure: Figure) -> bool:
+    from matplotlib.layout_engine import PlaceHolderLayoutEngine
+
+    return isinstance(figure.get_layout_engine(), PlaceHolderLayoutEngine)
+
+
+def thin_ticks(*drawn: Axes) -> None:
+    """Fewer ticks where their labels would touch; the figure must have been settled."""
+    from matplotlib.ticker import MaxNLocator
+
+    for axes in drawn:
+        for axis, side in ((axes.xaxis, 0), (axes.yaxis, 1)):
+            for count in (6, 5, 4, 3, 2):
+                if not isinstance(axis.get_major_locator(), MaxNLocator) or not _crowded(axis, side):
+                    break
+                axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
+                settle(root(axes))
+
+
+def _crowded(axis: Axis, side: int) -> bool:
+    """Whether labels of neighbouring ticks are less than a good half of a letter apart."""
+    low, high = sorted(axis.get_view_interval())
+    slack = 1e-9 * (high - low)
+    ticks = [tick for tick in axis.get_major_ticks() if low - slack <= tick.get_loc() <= high + slack]
+    labels = [tick.label1 for tick in ticks if tick.label1.get_text() and tick.label1.get_visible()]
+    boxes = [label.get_window_extent() for label in labels]
+    ends = sorted(tuple(box.intervaly if side else box.intervalx) for box in boxes)
+    room = 0.0 if side else 0.6 * min((box.height for box in boxes), default=0.0)
+    return any(after[0] - before[1] < room for before, after in itertools.pairwise(ends))
+
+
+def settle(figure: Figure) -> None:
+    """Give everything its place, unless nothing has changed since that was done."""
+    if figure.stale:
+        figure.draw_without_rendering()
+
+
+def legend_below(axes: Axes, handles: Sequence[Artist], own: bool) -> None:
+    """A small legend in as many columns as find room: under everything in a figure of ours, else under the axes.
+
+    Parameters
+    ----------
+    axes : Axes
+        A legend that they have goes.
+    handles : sequence of Artist
+        With labels.
+    own : bool
+        Whether the figure is ours to be laid out.
+    """
+    from matplotlib import rcParams
+    from matplotlib.font_manager import FontProperties
+
+    figure, before = root(axes), axes.get_legend()
+    if before is not None:
+        before.remove()
+    if not handles:
+        return
+    size = 0.92 * FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points()
+    look: dict[str, Any] = {"handles": handles, "borderpad": 0.0, "frameon": False, "fontsize": size}
+    look |= {"handlelength": 1.8, "handletextpad": 0.5, "columnspacing": 0.9, "labelspacing": 0.25}
+    if own:
+        place, room = {"loc": "outside lower center"}, figure.bbox.width
+    else:
+        place, room = {"loc": "upper center", "borderaxespad": 0.0}, axes.bbox.width
+    columns, rows = len(handles), 1
+    legend = (figure if own else axes).legend(ncols=columns, **place, **look)
+    while legend.get_window_extent().width > room and columns > 1:
+        legend.remove()
+        rows += 1
+        columns = -(-len(handles) // rows)
+        legend = (figure if own else axes).legend(ncols=columns, **place, **look)
+    settle(figure)
+    for _ in range(0 if own else 3):  # a layout that makes room for the legend makes the axes lower
+        box = axes.xaxis.get_tightbbox()
+        low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
+        gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
+        legend.set_bbox_to_anchor((0.5, gap), transform=axes.transAxes)
+        settle(figure)
 
 
 def windows() -> bool:
@@ -125,8 +303,8 @@ class FigureOptions(TypedDict, total=False):
     """Of any picture."""
 
     legend: bool | str
-    figsize: tuple[float, float] | None
-    style: str | Mapping[str, Any] | None
+    figsize: Size
+    style: Style
 
 
 class PlotOptions(FigureOptions, total=False):

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contvines.shared.animations import animated, check_animation, pictures
-from contvines.shared.figures import new_figure, styled
+from contvines.shared.figures import Style, new_figure, styled
 from contvines.shared.near_names import hinting
-from orbits.plots.portrait import title
-from orbits.plots.shown import LINE, scene
+from orbits.plots.portrait import history, phase, title
+from orbits.plots.shown import COLOURS, Shown, shown
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -32,7 +32,7 @@ def animate(
     seconds: float = 3.0,
     rate: int = 20,
     figsize: tuple[float, float] = (6.4, 4.2),
-    style: str | Mapping[str, Any] | None = None,
+    style: Style = None,
 ) -> FuncAnimation:
     """The orbit in motion over its period, which repeats.
 
@@ -66,15 +66,15 @@ def animate(
     frames = pictures(seconds, rate)
     if path is not None:
         check_animation(path)
-    about = scene(orbit, 4 * frames)
+    seen = shown(orbit, 4 * frames)
     with styled(style):
         figure = new_figure(figsize)
         figure.suptitle(title(orbit).split("\n")[0], fontsize="medium")
         above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.6))
-        x = np.asarray(about["history"]["x"])
-        even = np.linspace(x[0], x[-1], frames, endpoint=False)
-        move = _stage(above, about, even)
-        _history(below, about)
+        even = np.linspace(seen.clock[0], seen.clock[-1], frames, endpoint=False)
+        move = _point(above, seen, even, orbit.real) if seen.animation is None else _stage(above, seen, even)
+        history(below, seen, orbit.real)
+        below.legend(loc="best", fontsize="small", ncols=2)
         now = below.axvline(even[0], color="0.2", linewidth=1.0)
 
         def draw(frame: int) -> None:
@@ -84,17 +84,15 @@ def animate(
         return animated(figure, draw, path, seconds, rate)
 
 
-def _stage(axes: Axes, about: dict[str, Any], even: np.ndarray) -> Callable[[int], None]:
+def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
     """Draw what moves; the function of the frame that moves it."""
-    stage = about["animation"]
-    if stage is None:
-        return _point(axes, about, even)
+    stage = seen.animation or {}
     if "box" in stage:  # evenly spread over the period
         bodies, walls = {"absorber": stage["body"]}, [stage["box"] - wall for wall in stage["walls"]]
         given = np.linspace(even[0], 2.0 * even[-1] - even[-2], len(stage["box"]))
     else:
         bodies, walls = stage["bodies"], [wall["at"] for wall in stage["walls"]]
-        given = np.asarray(about["history"]["x"])
+        given = seen.clock
     places = {name: np.interp(even, given, v) for name, v in bodies.items()}
     edges = [np.interp(even, given, wall) for wall in walls]
     everything = np.concatenate([*places.values(), *edges])
@@ -104,16 +102,12 @@ def _stage(axes: Axes, about: dict[str, Any], even: np.ndarray) -> Callable[[int
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
     axes.axhline(0.3, color="0.8", linewidth=1.0)
-    marks = [
-        axes.plot([v[0]], [0.42], "o", markersize=12, color=f"C{j}" if len(places) > 1 else LINE, label=name)[
-            0
-        ]
-        for j, (name, v) in enumerate(places.items())
-    ]
-    lines = [
-        axes.plot([edge[0], edge[0]], [0.3, 0.8], color=WALL, linewidth=5.0, solid_capstyle="butt")[0]
-        for edge in edges
-    ]
+    marks, lines = [], []
+    for j, (name, v) in enumerate(places.items()):
+        look = {"markersize": 12, "color": COLOURS[j % len(COLOURS)], "label": name}
+        marks += axes.plot([v[0]], [0.42], "o", **look)
+    for edge in edges:
+        lines += axes.plot([edge[0]] * 2, [0.3, 0.8], color=WALL, linewidth=5.0, solid_capstyle="butt")
     if len(places) > 1:
         axes.legend(loc="upper right", fontsize="small", ncols=len(places), frameon=False)
 
@@ -126,29 +120,13 @@ def _stage(axes: Axes, about: dict[str, Any], even: np.ndarray) -> Callable[[int
     return move
 
 
-def _point(axes: Axes, about: dict[str, Any], even: np.ndarray) -> Callable[[int], None]:
+def _point(axes: Axes, seen: Shown, even: np.ndarray, real: bool) -> Callable[[int], None]:
     """A point on the phase portrait."""
-    portrait, x = about["portrait"], np.asarray(about["history"]["x"])
-    across, up = np.asarray(portrait["x"]), np.asarray(portrait["y"])
-    axes.plot(across, up, color="0.7", linewidth=1.0)
-    axes.set_xlabel(portrait["names"][0])
-    axes.set_ylabel(portrait["names"][1])
-    places = np.interp(even, x, across), np.interp(even, x, up)
-    (mark,) = axes.plot([places[0][0]], [places[1][0]], "o", color=LINE)
+    phase(axes, seen, real)
+    across, up = (np.interp(even, seen.clock, values) for values in (seen.x, seen.y))
+    (mark,) = axes.plot([across[0]], [up[0]], "o", color="0.1", zorder=5)
 
     def move(frame: int) -> None:
-        mark.set_data([places[0][frame]], [places[1][frame]])
+        mark.set_data([across[frame]], [up[frame]])
 
     return move
-
-
-def _history(axes: Axes, about: dict[str, Any]) -> None:
-    history = about["history"]
-    for j, (name, values) in enumerate(history["curves"].items()):
-        axes.plot(history["x"], values, color=f"C{j}", label=name)
-    for wall in history["walls"]:
-        axes.plot(history["x"], wall, color=WALL, linewidth=0.8, linestyle="--")
-    axes.set_xlabel(history["name"])
-    axes.set_ylabel(history["unit"])
-    axes.margins(x=0.0)
-    axes.legend(loc="best", fontsize="small", ncols=2)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping, Sequence
-from itertools import chain
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.figures import new_figure, styled
+from contvines.shared.figures import LOW, NARROW, Size, Style, legend_below, panels
 from contvines.shared.near_names import hinting
 from contvines.shared.numbers import complex_figures, figures
 from orbits.machines.measures import sign
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
 
 
 PANELS = ("both", "phase", "history")
-NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
 WALL = "#d9d9d9"
 MARKER = {"color": "white", "mec": "black", "mew": 1.0, "ms": 6, "ls": "none", "zorder": 4}
 
@@ -38,8 +36,8 @@ def portrait(
     show: str | None = None,
     heading: bool = True,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw the orbit: of a built-in machine w' against w, left wall on the left, and motions over forcing periods; of a declared machine the first two
     states against one another, and all states over time.
@@ -73,36 +71,30 @@ def portrait(
     """
     if show is not None and show not in PANELS:
         raise ValueError(f"show = {show!r} is unknown; choose one of {', '.join(PANELS)}")
+    size = figsize or ((9.6, 4.0) if show in (None, "both") else (4.8, 4.0))
+    small = size[0] < NARROW and size[1] < LOW
+    count = (1 if small else 2) if axes is None else np.size(np.asarray(axes, dtype=object))
+    which = show or ("both" if count == 2 else "phase")
+    if axes is not None and (which == "both") != (count == 2):
+        raise ValueError(f"show = {which!r} needs {2 if which == 'both' else 1} axes, not {count}")
+    arranged: dict[str, Any] = {"mosaic": "a"}
+    if which == "both":
+        arranged = {"mosaic": "a;b"} if size[0] < NARROW else {"mosaic": "ab", "width_ratios": (1.0, 1.5)}
     seen = shown(orbit, points)
-    with styled(style):
-        if axes is None:
-            size = figsize or ((9.6, 4.0) if show in (None, "both") else (4.8, 4.0))
-            small = size[0] < NARROW and size[1] < LOW
-            panels = show or ("phase" if small else "both")
-            figure = new_figure(size)
-            if panels != "both":
-                drawn = [figure.add_subplot()]
-            elif size[0] < NARROW:
-                drawn = list(figure.subplots(2, 1))
-            else:
-                drawn = list(figure.subplots(1, 2, width_ratios=(1.0, 1.5)))
-            if heading:
-                text = title(orbit)
-                figure.suptitle(text.split("\n")[0] if small else text, fontsize="medium", wrap=True)
-        else:
-            drawn = list(axes) if isinstance(axes, Sequence | np.ndarray) else [axes]
-            panels = show or ("both" if len(drawn) == 2 else "phase")
-            if (panels == "both") != (len(drawn) == 2):
-                raise ValueError(
-                    f"show = {panels!r} needs {2 if panels == 'both' else 1} axes, not {len(drawn)}"
-                )
-            figure = drawn[0].get_figure(root=True)
-            assert figure is not None
-        if panels != "history":
+    with panels(axes, (1, 2), "an orbit is drawn on", size, style, arranged) as (figure, drawn):
+        if heading and axes is None:
+            text = title(orbit)
+            figure.suptitle(text.split("\n")[0] if small else text, fontsize="medium", wrap=True)
+        if which != "history":
             phase(drawn[0], seen, orbit.real)
-        if panels != "phase":
+        if which != "phase":
             history(drawn[-1], seen, orbit.real)
-            key(figure, drawn, axes is None, legend)
+            handles = [handle for panel in drawn for handle in panel.get_legend_handles_labels()[0]]
+            if isinstance(legend, str) and legend != "below":
+                chosen: dict[str, Any] = {"handles": handles, "loc": legend, "fontsize": "small"}
+                drawn[-1].legend(**chosen)
+            elif legend:
+                legend_below(drawn[-1], handles, axes is None)
     return figure
 
 
@@ -135,30 +127,6 @@ def title(orbit: Orbit) -> str:
     kind = "symmetric" if orbit.symmetric else "asymmetric"
     word = told if len(told) <= 60 else told[:40] + "..."
     return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
-
-
-def key(figure: Figure, panels: Sequence[Axes], own: bool, legend: bool | str) -> None:
-    """A legend under everything in a figure of ours, which makes room for it; under the axes in others; or where it is wanted."""
-    if legend is False:
-        return
-    axes = panels[-1]
-    pairs = [panel.get_legend_handles_labels() for panel in panels]
-    handles, labels = (list(chain.from_iterable(part)) for part in zip(*pairs))
-    if isinstance(legend, str) and legend != "below":
-        chosen: dict[str, Any] = {"loc": legend, "fontsize": "small"}
-        axes.legend(handles, labels, **chosen)
-        return
-    if own:
-        columns = len(labels) if figure.get_size_inches()[0] >= 1.35 * len(labels) else 2
-        look = {"ncols": columns, "frameon": False, "fontsize": "small"}
-        figure.legend(handles, labels, loc="outside lower center", **look)
-        return
-    figure.draw_without_rendering()
-    box = axes.xaxis.get_tightbbox()
-    low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
-    gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
-    look = {"ncols": 2, "frameon": False, "fontsize": "small", "borderaxespad": 0.0}
-    axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, gap), **look)
 
 
 def phase(axes: Axes, seen: Shown, real: bool) -> None:
