@@ -1,4 +1,4 @@
-"""What a motion settles on: recognised by recurrence, at one value or along a sweep."""
+"""Attractors by simulation: recognised by recurrence, at one parameter value or along a sweep."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""What a simulation settles on."""
+"""Attractors found by simulation, and statistics of their motion."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 SETTLED = 0.01
-"""Largest relative change of two observations that tell the same."""
-LASTING = 16  # forcing periods of a motion that does not recur
+"""Largest relative difference of two observations that agree."""
+LASTING = 16  # forcing periods that `Attractor.follow` simulates of a motion that is not periodic
 MOST_EVENTS = 100_000
 
 
@@ -35,15 +35,15 @@ class Observation:
     Attributes
     ----------
     periods : float
-        Forcing periods looked at.
+        Forcing periods observed.
     extremes : dict of float
-        How far it goes; see `orbits.flows.trajectory.Trajectory.extremes`.
+        Largest displacements; see `orbits.flows.trajectory.Trajectory.extremes`.
     impact_speed : float
-        Fastest approach.
+        Largest approach speed of an impact.
     impacts_per_period : float
         Mean number of impacts per forcing period.
     contacts : int
-        How often impacts piled up into persistent contact.
+        Number of times that impacts accumulated into persistent contact.
     """
 
     periods: float
@@ -53,7 +53,7 @@ class Observation:
     contacts: int
 
     def near(self, other: Observation) -> bool:
-        """Whether two observations tell the same, up to `SETTLED`."""
+        """Whether two observations agree up to `SETTLED`."""
         pairs = (
             *((self.extremes[name], other.extremes[name]) for name in self.extremes),
             (self.impact_speed, other.impact_speed),
@@ -64,7 +64,7 @@ class Observation:
 
 @dataclass(frozen=True, eq=False)
 class Attractor:
-    """The motion that is left after a transient.
+    """The motion after a transient.
 
     Attributes
     ----------
@@ -74,20 +74,20 @@ class Attractor:
         Parameter vector.
     kind : str
         ``periodic``; ``sliding`` (an absorber that hits no wall); ``stuck`` (at rest in its cavity), of a declared machine ``rest`` (a wall holds
-        the body for good, or a self-excited machine comes to rest); ``chatter`` (impacts pile up into persistent contact, in every cycle
-        or every 32 periods on average); ``chaotic``, of a declared machine ``aperiodic`` (nothing recurs within the periods looked at).
+        the body permanently, or a self-excited machine comes to rest); ``chatter`` (impacts accumulate into persistent contact, in every cycle
+        or every 32 periods on average); ``chaotic``, of a declared machine ``aperiodic`` (no return within the periods simulated).
     periods : int
-        Forcing periods until the motion recurs; 0 where it rests or does not.
+        Forcing periods of the cycle; 0 at rest, and if the motion is not periodic.
     orbit : Orbit or None
-        The solved orbit next to the simulated motion; None where no word describes that.
+        The solved orbit at the simulated motion; None if no word describes it.
     trajectory : Trajectory
         The last part of the simulation.
     length : int
-        Events of the trajectory until the motion recurs, the last ones; 0 if it does not.
+        Number of events of the cycle, which are the last ones of the trajectory; 0 if the motion is not periodic.
     state : float array (S,)
-        A state on the attractor, from which a simulation goes on.
+        A state on the attractor, from which a simulation can continue.
     seen : Observation or None
-        What a motion that does not recur does in the long run, where it was followed.
+        Long-time statistics of a motion that is not periodic, if it was observed.
     """
 
     model: Varying
@@ -107,7 +107,7 @@ class Attractor:
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The cycle's events, every slip written."""
+        """Events of the cycle, including every slip."""
         if self.orbit is not None:
             return self.orbit.word.events
         return tuple(self.trajectory.letters[len(self.trajectory) - self.length :])
@@ -131,19 +131,19 @@ class Attractor:
 
     @property
     def word(self) -> Word | None:
-        """The cycle's word; None where no word describes the motion: chaos, persistent contact, frictionless motion off the walls."""
+        """Word of the cycle; None for chaos, persistent contact and frictionless motion that hits no wall."""
         return None if self.orbit is None else self.orbit.word
 
     @property
     def text(self) -> str:
-        """The word in the one spelling of its motion; of motions with persistent contact the plain list of events."""
+        """The word in its canonical spelling; the list of events if the motion has persistent contact."""
         if self.orbit is not None:
             return self.orbit.spelling
         return (" " if any(len(letter) > 1 for letter in self.letters) else "").join(self.letters)
 
     @property
     def nodes(self) -> np.ndarray:
-        """The orbit's nodes; see `orbits.cycle.Cycle`."""
+        """Nodes of the orbit; see `orbits.cycle.Cycle`."""
         return np.empty((0, self.model.node)) if self.orbit is None else self.orbit.nodes
 
     @property
@@ -153,22 +153,22 @@ class Attractor:
 
     @property
     def multipliers(self) -> np.ndarray:
-        """Multipliers of the orbit; none without one."""
+        """Multipliers of the orbit; empty without one."""
         return np.empty(0, complex) if self.orbit is None else self.orbit.multipliers
 
     @property
     def approaches(self) -> np.ndarray:
-        """Approach speeds of the impacts of the cycle, or of the last part of the run."""
+        """Approach speeds of the impacts of the cycle, or of the trajectory if the motion is not periodic."""
         return self.trajectory.approaches(self.first)
 
     @property
     def first(self) -> int:
-        """The first event of the trajectory that belongs to the cycle; 0 where nothing recurs."""
+        """Index of the first event of the cycle in the trajectory; 0 if the motion is not periodic."""
         return len(self.trajectory) - self.length if self.length else 0
 
     @property
     def impact_speed(self) -> float:
-        """Fastest approach of an impact."""
+        """Largest approach speed of an impact."""
         return self.seen.impact_speed if self.seen else float(self.approaches.max(initial=0.0))
 
     @property
@@ -207,7 +207,7 @@ class Attractor:
         return self.orbit
 
     def problem(self, parameter: str | None = None, symmetric: bool | None = None):
-        """The attractor as a continuation problem, so that it can be handed to `contvines.diagram`.
+        """The attractor as a continuation problem, for `contvines.diagram`.
 
         Raises
         ------
@@ -222,16 +222,16 @@ class Attractor:
 
     @cached_property
     def _reading(self) -> tuple[bool, int]:
-        """Whether the orbit's word is spelled in the mirror image, and from which event on."""
+        """Whether the canonical spelling is that of the mirror image, and the event at which it begins."""
         word = self.found.word
-        if not len(word) or word.alphabet.alone is None:  # words of declared machines stand as they are read
+        if not len(word) or word.alphabet.alone is None:  # words of declared machines keep their order
             return False, 0
         read, images = Word.parse(self.text, word.frictionless), (word, word.mirror())
         return next((one is not word, k) for one in images for k in range(len(one)) if one.rotate(k) == read)
 
     @property
     def guess(self) -> np.ndarray | None:
-        """The nodes as a study's `guess` takes them, read as the word is spelled; None where no word describes the motion."""
+        """Nodes for a study's `guess`, in the order of the canonical spelling; None without a word."""
         if self.orbit is None:
             return None
         mirrored, place = self._reading
@@ -239,7 +239,7 @@ class Attractor:
 
     @property
     def dots(self) -> list[float]:
-        """What a picture shows of the impacts of the cycle, from the word's first event on, or of the last part of the run."""
+        """Ordinates of the impacts in a bifurcation picture, from the word's first event on; of the trajectory if the motion is not periodic."""
         run, first = self.trajectory, self.first
         shown = np.array(run.shown(first))
         if self.orbit is not None and self.model.forced and len(shown) > 1:
@@ -249,19 +249,19 @@ class Attractor:
         return shown.tolist()
 
     def simulator(self) -> Simulator:
-        """A simulator on the motion, at `state`."""
+        """A simulator at `state`."""
         simulator = simulator_of(self.model, self.params)
         simulator.go_on(self.state)
         return simulator
 
     def follow(self, periods: float | None = None) -> Trajectory:
-        """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
+        """Simulate from `state` over one cycle, or sixteen periods if the motion is not periodic."""
         return self.simulator().run(
             periods or self.periods or (1 if self.recurrent else LASTING), MOST_EVENTS
         )
 
     def distance(self, other: Attractor) -> float:
-        """Largest difference of the canonical nodes, relative to 1 + nodes: over all rotations, whole periods and the mirror image; inf if the words differ."""
+        """Largest difference of the canonical nodes (over rotations, whole periods and the mirror image), relative to 1 + nodes; inf if the words differ."""
         if self.orbit is None or other.orbit is None:
             alike = self.orbit is other.orbit and (self.kind, self.periods) == (other.kind, other.periods)
             return 0.0 if alike and self.text == other.text else np.inf
@@ -276,7 +276,7 @@ class Attractor:
 
 
 OFTEN = 32
-"""A motion that does not recur is `chatter` if it rests on a wall at least once in so many periods, on average."""
+"""A motion that is not periodic is `chatter` if it rests on a wall at least once in so many periods, on average."""
 PIECE = 256  # periods simulated at a time: bounds the memory
 PERIOD_EVENTS = 400  # per period
 INSTANTS = 200  # instants of a cycle
@@ -284,12 +284,11 @@ SAMPLES = 48  # instants; events come on top
 
 
 def observe(found: Attractor, least: float = 0.0) -> Observation:
-    """Statistics of a motion from `found.state`, which stays as it is.
+    """Compute statistics of a motion, simulated from `found.state`.
 
-    A motion that recurs is followed over one cycle. Another one is followed until its largest values and its mean
-    number of impacts have changed by less than 1 % while the time of observation doubled: a modulated motion
-    grows, bursts and fades over tens or hundreds of periods, and a few of them show only a part of that. Where a simulation
-    takes long, the last part of that by which the motion was recognised must do, or `least` periods where these are asked for.
+    A periodic motion is simulated over one cycle. Any other is simulated until its extremes and its mean number of impacts change by less
+    than 1 % when the time of observation doubles: a modulated motion grows, bursts and decays over tens or hundreds of periods.
+    For machines whose simulation is slow, `least` periods are simulated, or, if that is 0, the trajectory of the attractor is used.
     """
     simulator = found.simulator()
     first, longest = simulator.observed
@@ -297,7 +296,7 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
     if found.recurrent:
         seen = tally.go_on(
             (found.periods or 1) + SIMULATING.whole, INSTANTS
-        )  # the event it starts with comes again
+        )  # so that the first event is met again
         speed = seen.impact_speed if found.impacts else 0.0
         return replace(seen, impact_speed=speed, impacts_per_period=found.impacts_per_period)
     if not longest:
@@ -313,7 +312,7 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
 
 
 def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
-    """The attractor with its kind and impacts as `observe` sees them; one that recurs, or rests, is returned as it is."""
+    """Return the attractor with kind and impacts from its long-time statistics; periodic motions and rest are returned unchanged."""
     simulator = found.simulator()
     if found.recurrent or found.kind == simulator.resting or not simulator.observed[1]:
         return found
@@ -323,19 +322,21 @@ def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
 
 
 def measure_names(model: Varying) -> tuple[str, ...]:
-    """Measures in a sweep's rows.
+    """Names of the measures in the rows of a sweep.
 
-    How far the motion goes: ``max_abs_q1`` of the oscillator and ``max_abs_w`` in the cavity (in the reduced model, whose cavity is shaken as
-    prescribed, ``C2``, the squared amplitude of its motion), of a declared machine ``max_`` and ``min_`` of its first state. The fastest
-    approach ``impact_speed``, of a declared machine ``approach_speed``; ``impacts_per_period``: per forcing period, of a self-excited machine per unit
-    of time. Where more than the absorber moves, and is forced, of motions that do not recur ``modulated_low``, ``modulated_mean``,
-    ``modulated_high``: of the largest displacements in each forcing period, and ``silent``: the share of the periods without an impact.
+    - Displacements: ``max_abs_q1`` of the oscillator and ``max_abs_w`` in the cavity (in the reduced model, whose cavity has a prescribed
+      motion, ``C2``, the squared amplitude of that motion); of a declared machine ``max_`` and ``min_`` of its first state.
+    - Impacts: the largest approach speed ``impact_speed`` (of a declared machine ``approach_speed``), and ``impacts_per_period`` (of a
+      self-excited machine per unit of time).
+    - Modulation, of forced machines in which more than the absorber moves, for motions that are not periodic: ``modulated_low``,
+      ``modulated_mean``, ``modulated_high`` of the largest displacements in each forcing period, and ``silent``, the share of the periods
+      without an impact.
     """
     return flow_of(model).simulated_names(model)
 
 
 def described(found: Attractor, least: float = 0.0) -> tuple[Attractor, dict[str, float]]:
-    """The attractor with its kind and impacts as it is observed (see `observe`), and its measures by name (see `measure_names`)."""
+    """Return the attractor with kind and impacts from its long-time statistics (see `observe`), and its measures by name (see `measure_names`)."""
     model, params, orbit, flow = found.model, found.params, found.orbit, flow_of(found.model)
     names = measure_names(model)
     known = dict.fromkeys(names, np.nan)
@@ -357,21 +358,21 @@ def described(found: Attractor, least: float = 0.0) -> tuple[Attractor, dict[str
 
 
 def modulated(found: Attractor, measures: Mapping[str, float]) -> str:
-    """How a motion is modulated, chaotic by its largest Lyapunov exponent; empty where it recurs or nothing but the absorber moves."""
+    """Name of the modulation of a motion, with ``chaotic`` decided by its largest Lyapunov exponent; empty for periodic motions and if only the absorber moves."""
     if not modulation_of(measures):
         return ""
     return modulation_of(measures, wandering(*found.simulator().growth(), True) == "chaotic")
 
 
 class _Tally:
-    """A motion simulated piece by piece, and what has been seen of it so far."""
+    """Statistics of a motion that is simulated piece by piece."""
 
     def __init__(self, simulator: Simulator) -> None:
         self.simulator, self.moving = simulator, True
         self.seen = Observation(0.0, {}, 0.0, 0.0, 0)
 
     def go_on(self, length: float, per_period: int = 0) -> Observation:
-        """Simulate until `length` periods have been seen in all."""
+        """Simulate until `length` periods have been observed in all."""
         while self.moving and self.seen.periods < length - SIMULATING.whole:
             piece = min(PIECE, length - self.seen.periods)
             run = self.simulator.run(piece, int(PERIOD_EVENTS * (piece + 1.0)))
@@ -380,7 +381,7 @@ class _Tally:
         return self.seen
 
     def add(self, run: Trajectory, per_period: int = 0) -> Observation:
-        """What has been seen with one more piece."""
+        """Add one piece to the statistics."""
         seen, extremes = self.seen, run.extremes(per_period)
         for name, value in seen.extremes.items():
             extremes[name] = (min if name.startswith("min_") else max)(value, extremes[name])
@@ -393,12 +394,12 @@ class _Tally:
 
 
 class Modulation(NamedTuple):
-    """Of a motion, over forcing periods.
+    """Modulation of a response over forcing periods.
 
     Attributes
     ----------
     low, mean, high : float
-        Of the largest displacement in a period, in the machine's own numbers.
+        Smallest, mean and largest value of the largest displacement in a period, dimensionless.
     silent : float
         Share of the periods without an impact.
     """
@@ -410,17 +411,17 @@ class Modulation(NamedTuple):
 
     @property
     def measures(self) -> dict[str, float]:
-        """By name."""
+        """Measures by name."""
         return dict(zip((*BAND, SILENT), self))
 
     @property
     def kind(self) -> str:
-        """See `contvines.shared.motions.modulation_of`."""
+        """Name of the modulation; see `contvines.shared.motions.modulation_of`."""
         return modulation_of(self.measures)
 
 
 def modulation(run: Trajectory) -> Modulation:
-    """Of the whole forcing periods of a run."""
+    """Modulation over the whole forcing periods of a trajectory."""
     periods = max(1, int(run.lasted + SIMULATING.whole))
     clocks, sizes = run.responses(SAMPLES)
     place = ((clocks - run.clocks[0]) / TWO_PI).astype(int)

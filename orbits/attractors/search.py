@@ -1,4 +1,4 @@
-"""What a machine settles on from one start or many: simulated until it nearly returns, then solved for."""
+"""Find attractors from one start or many: simulate until the motion nearly returns, then solve the equations of the cycle."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from orbits.orbit import Orbit
 
 
-DRAWS = 200  # starts drawn at most to find one that can be simulated
-SHORT = 4  # forcing periods of the cycles that are looked for first
-FAR = 0.1  # of a cycle from the simulated motion, relative to 1 + states
-DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed longer; t^(-1/2) gives 8
-MOVES = 8  # times that a creeping motion is moved on
-PLAIN = 40  # events up to which the plainest reading is looked for
+DRAWS = 200  # random starts tried at most until one can be simulated
+SHORT = 4  # longest cycles of the first search, in forcing periods
+FAR = 0.1  # largest distance of a solved cycle from the simulated motion, relative to 1 + states
+DRIFTS = 2.0  # factor by which the difference of two returns must change from one look to the next to count as a drift; t^(-1/2) gives 8
+MOVES = 8  # times at most that a creeping motion is moved to a wall
+PLAIN = 40  # longest word, in events, for which the shortest spelling is sought
 
 
 def find_attractor(
@@ -42,7 +42,7 @@ def find_attractor(
     observed: bool = True,
     **parameters: float,
 ) -> Attractor:
-    """Simulate, leave out the transient, and recognise what is left: the work of `Varying.attractor`, which says what is given."""
+    """Simulate, discard the transient and identify the attractor; `Varying.attractor` documents the parameters."""
     if max_period < 1:
         raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
     if transient is not None and not (np.isfinite(transient) and transient >= 0.0):
@@ -64,7 +64,7 @@ def met(
     first: Mapping[str, float] | np.ndarray | None = None,
     **options: int,
 ) -> Iterator[tuple[Attractor, dict[str, float]]]:
-    """What a start (rest by default) and others that are drawn, always the same ones, lead to, as `described`; those within a wall are left out."""
+    """Yield attractors and their measures (see `described`) from the start `first` (rest by default) and from seeded random starts; starts inside a wall are skipped."""
     generator = np.random.default_rng(seed)
     values: dict[str, Any] = {**model.named(params), **options}
     for i in range(count):
@@ -74,14 +74,14 @@ def met(
 
 
 def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Attractor:
-    """The attractor of the motion on which a simulator is, which is moved on; None: as patient as a sweep."""
+    """Attractor reached from the simulator's present state; the simulator is advanced. `patience`: prolongations of the transient, None for those of a sweep."""
     how = simulator.waiting
     tries = how.in_sweeps if patience is None else patience
     return attracted(simulator, transient, max_period, how.returned, tries)
 
 
 def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str, float]:
-    """Measures of what the simulation settles on that begins with a motion; none of one without events."""
+    """Measures of the attractor reached by a simulation that begins on an orbit; empty for an orbit without events."""
     if not len(orbit.nodes):
         return {}
     simulator = simulator_of(orbit.model, orbit.params)
@@ -92,7 +92,7 @@ def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str,
 def different_attractors(
     model: Varying, count: int, seed: int = 0, size: float = 1.0, **options: Any
 ) -> list[Attractor]:
-    """The attractors that random starts lead to: the work of `Varying.attractors`, which says what is given."""
+    """Different attractors reached from random starts; `Varying.attractors` documents the parameters."""
     generator = np.random.default_rng(seed)
     params = model.vector({k: v for k, v in options.items() if k in model.parameter_names})
     found: list[Attractor] = []
@@ -114,20 +114,23 @@ def different_attractors(
 def attracted(
     simulator: Simulator, transient: float, max_period: int, tolerance: float, patience: int
 ) -> Attractor:
-    """What the motion of a simulator leads to: simulated until it returns to itself; see `orbits.attractors.attractor.lasting` for the rest.
+    """Attractor reached from the simulator's present state: simulate until the motion returns to itself, and solve for the cycle.
+
+    `orbits.attractors.attractor.lasting` completes the kind of a motion that does not return.
 
     Parameters
     ----------
     simulator : Simulator
-        Moved on.
+        Advanced.
     transient : float
-        Forcing periods (of a self-excited machine: events) simulated first; more each time nothing has returned.
+        Forcing periods (of a self-excited machine: events) simulated first; prolonged each time no return is found.
     max_period : int
-        Longest period looked for, in forcing periods (events per cycle: 25 times as many).
+        Longest period sought, in forcing periods (events per cycle: 25 times as many).
     tolerance : float
-        Largest difference of points, relative to 1 + points, that counts as a return; later, and at last, what nearly returns and attracts.
+        Largest difference of points, relative to 1 + points, that counts as a return. After the first attempt near returns count, too, if the
+        solved cycle attracts.
     patience : int
-        How often the transient is prolonged.
+        Number of prolongations of the transient.
     """
     waiting, model, begun = simulator.waiting, simulator.model, simulator.time
     early = transient // waiting.early if waiting.early else 0
@@ -146,20 +149,20 @@ def attracted(
         rests = simulator.rests(run, last)
         if rests:
             rest = Orbit.at_rest(model, simulator.params) if model.in_cavity else None
-            periods = 0 if rest is None else rest.periods  # what sticks moves with its cavity
+            periods = 0 if rest is None else rest.periods  # a sticking absorber moves with its cavity
             return Attractor(
                 model, simulator.params, simulator.resting, periods, rest, run, 0, simulator.state.copy()
             )
         if rests is None:
             attempt, length = attempt + 1, waiting.longer * (length or run.lasted)
             continue
-        if model.in_cavity and not len(run):  # without friction a free motion between the walls has no events
+        if model.in_cavity and not len(run):  # frictionless motion between the walls: no events
             return Attractor(model, simulator.params, "sliding", 1, None, run, 0, simulator.state.copy())
         if moved < MOVES and simulator.move_on(run, max_period):
             moved += 1
             continue
-        # next to a bifurcation a motion may recur but for a drift that fades or grows: it is given time as long as it does; one that
-        # stays as it is belongs to a longer cycle, or to narrow bands
+        # Near a bifurcation a motion may return but for a drift that decays or grows: continue as long as the drift changes.
+        # A difference that stays the same belongs to a longer cycle or to narrow chaotic bands.
         now = next(iter(returns(run, max_period, SIMULATING.nearly)), None)
         drifts, before = _drifts(before, now), now
         waited = patience > 0 and simulator.time - begun < waiting.slow and drifts
@@ -178,11 +181,11 @@ def attracted(
 
 
 Found = tuple[Orbit | int, int, float]
-"""An orbit, or the events of a cycle that no word describes; its forcing periods; how far the motion is from having returned to it."""
+"""An orbit, or the number of events of a cycle that no word describes; its forcing periods; difference of the last two returns."""
 
 
 def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Orbit | None:
-    """The shortest cycle at the end of a run that its equations confirm and that attracts, or on which the motion is."""
+    """The shortest cycle at the end of a run whose equations have a solution there, and which attracts or has been reached exactly; None if there is none."""
     for orbit, _, gap in _candidates(simulator, run, max_period, near):
         if isinstance(orbit, Orbit) and (gap <= SIMULATING.closed or _attracts(orbit)):
             return plainest(orbit)
@@ -190,12 +193,12 @@ def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: floa
 
 
 def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Iterator[Found]:
-    """The cycles at the end of a run, the shortest first, as far as their equations confirm them."""
+    """Yield cycles at the end of a run whose equations have a solution there, the shortest first."""
     if not len(run):
         yield from _eventless(simulator, run, max_period, near)
         return
     if near >= SIMULATING.nearly and run.piled.any():
-        return  # what nearly returns between two rests on a wall is no cycle
+        return  # between two rests on a wall a near return is no cycle
     tried = 0
     for length, periods, gap in returns(run, max_period, near):
         if run.piled[-length:].any():
@@ -210,7 +213,7 @@ def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: fl
 
 
 def _attracts(found: Orbit | int) -> bool:
-    """Whether a cycle does not repel; one without a word is only seen because it attracts."""
+    """Whether no multiplier lies outside the unit circle; a cycle without a word was reached by simulation, so it attracts."""
     return isinstance(found, int) or not np.any(np.abs(found.multipliers) > 1.0 + SIMULATING.neutral)
 
 
@@ -223,7 +226,7 @@ def _attractor(simulator: Simulator, run: Trajectory, found: Orbit | int, period
 
 
 def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int, int, float]]:
-    """Candidates (events, forcing periods, largest difference relative to 1 + points), shortest first: the last cycle repeats the one before it."""
+    """Yield candidates (events, forcing periods, largest difference relative to 1 + points), the shortest first, for which the last cycle repeats the one before."""
     n, labels = len(run), run.labels
     if n < 2:
         return
@@ -250,20 +253,20 @@ def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int
 
 
 def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] | None) -> bool:
-    """Whether two looks have seen one and the same return, with differences that are not alike."""
+    """Whether two successive looks found the same return with a difference that grows or decays."""
     if before is None or now is None or before[:2] != now[:2]:
         return False
     return not 1.0 / DRIFTS < now[2] / before[2] < DRIFTS
 
 
 def solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
-    """Events `first` to `last` - 1 of a run as an orbit, if its equations have a real solution within `far` of them; see `polished`."""
+    """Solve for the orbit through events `first` to `last` - 1 of a run; None if there is no real solution within `far` of them (see `polished`)."""
     orbit = _solved(run, first, last, periods, far)
     return None if orbit is None else plainest(orbit)
 
 
 def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
-    """The same, read from the first of these events: whether it attracts is known without another look at its equations."""
+    """Like `solved`, but the orbit begins at event `first`, so that its multipliers need no new linearisation."""
     word, nodes = run.cycle(first, last)
     if run.model.forced:
         nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
@@ -271,12 +274,12 @@ def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) ->
 
 
 def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
-    """The real orbit with the same word next to a guess, its shortest form; None if there is none within `far` (relative to 1 + states)."""
+    """Solve for the real orbit with the word of a guess, reduced to its primitive period; None if there is none within `far` (relative to 1 + states)."""
     nodes = solved_nodes(orbit.system(symmetric=False), orbit.nodes, orbit.params)
     if nodes is None:
         return None
     moved = nodes - orbit.nodes
-    for entry in orbit.flow.loose(orbit.model, orbit.word):  # shifted as a whole it is the same motion
+    for entry in orbit.flow.loose(orbit.model, orbit.word):  # a shift of the whole motion does not count
         moved[:, entry] -= moved[:, entry].mean()
     if np.abs(moved).max() > far * (1.0 + np.abs(orbit.nodes[:, 1:]).max()):
         return None
@@ -288,24 +291,24 @@ def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
 
 
 def plainest(orbit: Orbit) -> Orbit:
-    """The orbit read from the event from which its word is written shortest, never from a slip, in its first forcing period."""
+    """Rotate an orbit to the event (no slip) at which its word has the shortest spelling, in the first forcing period."""
     word = orbit.word
     if len(word) > 1:
         places = [i for i in range(len(word)) if word.letter(i).kind != SLIP] or [0]
         orbit = orbit.rotate(min(places, key=lambda i: _writing(orbit, i)))
-    if orbit.forced and len(word):  # without events it is read at phase zero
+    if orbit.forced and len(word):  # an orbit without events begins at phase zero
         orbit.nodes[:, 0] -= TWO_PI * np.floor(orbit.nodes[0, 0] / TWO_PI)
     return orbit
 
 
 def _writing(orbit: Orbit, place: int) -> tuple[int, str | tuple[str, ...], float]:
-    """Length and text of the word from an event on, then the phase."""
+    """Sort key of a spelling: length and text of the word from an event on, then its phase."""
     word, phase = orbit.word.rotate(place), float(orbit.nodes[place, 0]) % TWO_PI
     return (len(word.text), word.text, phase) if len(word) <= PLAIN else (0, word.events, phase)
 
 
 def _eventless(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Iterator[Found]:
-    """The cycles of a motion without events: forced, once per forcing period at phase zero; self-excited, that on which it settles."""
+    """Yield cycles of a motion without events: of a forced machine from its states at phase zero, of a self-excited one the cycle near its state."""
     model, params = run.model, run.params
     word = Word((), (simulator.modes,), model.alphabet)
     if not model.forced:

@@ -1,4 +1,4 @@
-"""Sweeps: the attractor at each value of a parameter, the state carried on; and many starts at once."""
+"""Parameter sweeps by simulation, each value begun at the last state of the value before; attractors of many starts in worker processes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SweepRow:
-    """One value of a sweep.
+    """The attractor at one value of a sweep.
 
     Attributes
     ----------
@@ -32,17 +32,17 @@ class SweepRow:
     direction : str
         ``up`` or ``down``.
     attractor : str
-        Its kind; see `orbits.attractors.attractor.Attractor`.
+        Kind of the attractor; see `orbits.attractors.attractor.Attractor`.
     word : str
-        Events of the cycle; empty where nothing recurs.
+        Events of the cycle; empty if the motion is not periodic.
     periods, impacts : int
-        k and l of the cycle; 0 where nothing recurs.
+        Forcing periods k and impacts l of the cycle; 0 if the motion is not periodic.
     measures : dict
-        Numbers by name, the same names in every row; see `orbits.attractors.attractor.measure_names`.
+        Measures by name, the same names in every row; see `orbits.attractors.attractor.measure_names`.
     detail : Attractor
-        The attractor itself, with its nodes and the state reached.
+        The attractor itself, with its nodes and last state.
     modulation : str
-        ``weak modulation``, ``strong modulation`` (impacts stop and begin again), either with ``chaotic`` before it; empty where it recurs.
+        ``weak modulation``, ``strong modulation`` (impacts stop and begin again), or either after ``chaotic``; empty for periodic motions.
     """
 
     value: float
@@ -57,7 +57,7 @@ class SweepRow:
 
     @property
     def dots(self) -> list[float]:
-        """What a picture shows: one measure of the whole motion, B or the approach speed of every impact, or the extremes of the first state."""
+        """Ordinates in a bifurcation picture: one measure of the whole motion, B or the approach speed of every impact, or the extremes of the first state."""
         names = flow_of(self.detail.model).swept(self.detail.model)
         return [float(self.measures[name]) for name in names if name in self.measures] or self.detail.dots
 
@@ -89,11 +89,10 @@ def sweep(
     transient, max_period
         As for `Varying.attractor`, at every value.
     nudge : float
-        A velocity is changed by this at each value, as noise would: a motion that has become unstable is then
-        left. 0 for none.
+        Perturbation of a velocity at each value, so that the motion leaves a cycle that has become unstable; 0 for none.
     exponents : bool
-        Whether motions that do not recur are told apart by their Lyapunov exponents, for `SweepRow.modulation`: of a declared machine that takes as
-        long as ten simulations.
+        Compute Lyapunov exponents of motions that are not periodic, for `SweepRow.modulation`. For a declared machine this takes as long as ten
+        simulations.
     progress : callable, optional
         Called with each row.
     **parameters
@@ -106,7 +105,7 @@ def sweep(
     Raises
     ------
     SimulationError
-        If the parameter or the values cannot be.
+        If the machine has no such parameter, a value is not allowed, or there are no values.
     """
     numbers = [float(value) for value in values]
     if over not in model.amount_names:
@@ -115,7 +114,7 @@ def sweep(
         raise SimulationError(f"no values of {over} to sweep over: give at least one")
     vectors = [
         model.vector_at(over, value, parameters) for value in numbers
-    ]  # all refused before work starts
+    ]  # bad values are refused before the first simulation
     state = simulator_of(model, vectors[0]).state_of(start)
     direction = "up" if numbers[-1] >= numbers[0] else "down"
     rows = []
@@ -141,14 +140,14 @@ def find_attractors(
     workers: int = 1,
     **options: Any,
 ) -> list[Attractor]:
-    """`find_attractor` from many starts; the result does not depend on the number of worker processes."""
+    """Call `find_attractor` for many starts; the result does not depend on the number of worker processes."""
     return _many(partial(find_attractor, model, **options), starts, workers)
 
 
 def sweeps(
     model: Varying, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: Any
 ) -> list[list[SweepRow]]:
-    """`sweep` over several lists of values, such as one up and one down, in worker processes if asked for."""
+    """Call `sweep` for several lists of values, such as one up and one down, in `workers` processes."""
     return _many(partial(sweep, model, over, **options), runs, workers)
 
 

@@ -1,4 +1,4 @@
-"""What many starts settle on: a machine's attractors at one value, each solved once, with the starts that reach it."""
+"""Attractors of a machine from many starts at one parameter value, each solved once, with the starts that reach it."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
-DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
+DRAWS = 64  # starts drawn at most per start wanted, to find those outside the walls
 
 
 class Population:
-    """Starts of a machine and what they settle on, against one of its parameters.
+    """Starts of a machine and the attractors they reach, with one parameter that varies.
 
     Parameters
     ----------
     model : Model or Machine
     parameter : str
-        The one that varies.
+        Name of the parameter that varies.
     parameters : mapping
-        All that are no fields of the machine, or replace them.
+        Values of further parameters, in place of the machine's own.
     workers : int, optional
-        Threads; all cores by default. Results do not depend on it.
+        Threads; all cores by default. The results do not depend on it.
 
     Raises
     ------
@@ -57,16 +57,16 @@ class Population:
         self.parameters = {k: v for k, v in dict(parameters or {}).items() if k != parameter}
         self.workers = workers
         self.across, self.brief, self.price, self._longest, self._embedded = flow_of(model).census(model)
-        own = model.in_cavity  # states of a page are shown by the names on it
+        own = model.in_cavity  # states of a declared machine are labelled by their own names
         self.notation = STARTS if own else {"phase": STARTS["phase"]}
-        self.leftward = "w" if own else ""  # w = +1 is the left wall, and stands on the left
+        self.leftward = "w" if own else ""  # the left wall is at w = +1: this axis is drawn reversed
         self._boxes: dict[float, np.ndarray] = {}
         self.work = 0.0
-        """Forcing periods simulated so far, those that solve for cycles included; of a self-excited machine its time over 2 pi."""
+        """Forcing periods simulated so far, with an equivalent for each solved cycle; of a self-excited machine its time over 2 pi."""
 
     @property
     def about(self) -> dict[str, Any]:
-        """The machine's name and settings, or its page."""
+        """The machine's name and settings, or its machine file."""
         return self.model.settings()
 
     @property
@@ -76,29 +76,29 @@ class Population:
 
     @property
     def units(self) -> dict[str, str]:
-        """Units of parameters and measures by name; none where all are plain numbers."""
+        """Units of parameters and measures by name; empty if all are dimensionless."""
         return self.model.units
 
     def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]:
-        """What one of these coordinates is in the unit that is shown, and that unit; plain numbers have none."""
+        """Factor from computed to displayed numbers, and the unit's name, of each coordinate that has a unit."""
         return self.model.gauges([name for name in names if name != "phase"], self.vector(p))
 
     def vector(self, p: float) -> np.ndarray:
-        """All parameters at the value `p` of the one that varies, shape (P,)."""
+        """All parameters, with the varying one at `p`; shape (P,)."""
         return self.model.vector_at(self.parameter, float(p), self.parameters)
 
     def box(self, p: float) -> np.ndarray:
-        """Smallest and largest coordinate of the starts, shape (n, 2).
+        """Smallest and largest value of each coordinate of the starts, shape (n, 2).
 
-        Of a built-in machine the cavity, and the velocities its walls can give; of a declared machine what it says (``starts=``), else twice what the motion
-        from rest reaches in sixty periods.
+        For a built-in machine: the cavity, and the velocities that its walls can give. For a declared machine: its ``starts=``, else twice the extent of
+        the motion from rest in sixty periods.
         """
         if p not in self._boxes:
             self._boxes[p] = self._simulator(p).box()
         return self._boxes[p]
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts in the box and outside the walls, shape (count, n).
+        """Draw low-discrepancy starts in the box and outside the walls, shape (count, n).
 
         Raises
         ------
@@ -120,7 +120,7 @@ class Population:
         return np.concatenate(kept)[:count]
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
-        """Simulate all starts and recognise what they settle on.
+        """Simulate all starts and identify the attractors they reach.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class Population:
             self.work += fleet.work
 
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Unstable cycles that the chaotic motion through a state passes near, each once, as problems with their unknowns.
+        """Find unstable cycles near the chaotic motion through a state, each once, as problems with their unknowns.
 
         Parameters
         ----------
@@ -161,10 +161,10 @@ class Population:
         return distinct(cycles, self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Cycles, stable or not, that are known in closed form or to which Newton's method leads from starts, each once.
+        """Find cycles, stable or not, by Newton's method on the return map from starts, and those known in closed form, each once.
 
-        Rest and sliding between the walls are in closed form: their mean position is free, so no start leads Newton's method to them. Of a
-        self-excited machine none.
+        Rest and sliding between the walls come from closed forms: their mean position is free, so that Newton's method does not converge to them.
+        Empty for a self-excited machine.
 
         Parameters
         ----------
@@ -182,7 +182,7 @@ class Population:
         return distinct((*self._closed(p), *cycles), self.parameter, p)
 
     def closed(self, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """The real motions known in closed form, stable or not: of built-in machines rest, sliding between the walls, symmetric impacts."""
+        """Real motions known in closed form, stable or not: for built-in machines rest, sliding between the walls and symmetric impacts."""
         return distinct(self._closed(p), self.parameter, p)
 
     def _closed(self, p: float) -> Iterable[Orbit]:
@@ -192,11 +192,11 @@ class Population:
         return closed_orbits(model, self.vector(p), Orbit) if isinstance(model, Model) else ()
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
-        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
+        """Rebuild the problem of a motion from a journal; None if that is not possible."""
         return rebuild(description)
 
     def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
-        """Measures, in the machine's units, of the motion through a state, those of a sweep; of what does not recur over at least so many periods."""
+        """Measures of a sweep, in the machine's units, for the motion through a state; if it is not periodic, over at least `periods`."""
         from orbits.attractors.attractor import described
         from orbits.attractors.search import goes_on
 
@@ -205,7 +205,7 @@ class Population:
         return described(goes_on(self._simulator(p, state), 0.0, self._longest), periods)[1]
 
     def _simulator(self, p: float, state: np.ndarray | None = None) -> Simulator:
-        """A simulator, on a motion if a state of it is given."""
+        """A simulator of this machine, at a state if one is given."""
         simulator = simulator_of(self.model, self.vector(p))
         if state is not None:
             simulator.go_on(state)

@@ -1,4 +1,4 @@
-"""Cycles of a machine, stable or not: those that a chaotic motion passes near, and those that Newton's method on the return map reaches from drawn starts."""
+"""Find cycles of a machine, stable or not: near the returns of a chaotic motion, and by Newton's method on the return map from random starts."""
 
 from __future__ import annotations
 
@@ -13,42 +13,38 @@ from orbits.orbit import Orbit
 from orbits.settings import SIMULATING, SOLVING
 
 NEXT, WIDE = 0.01, 0.5
-"""Largest distance of a cycle from its guess, relative to 1 + states; beside a chaotic motion all that is real counts."""
-NEAR = 0.1  # largest difference of a return, relative to the spread of the motion
-TRIES = 3  # returns with one and the same list of events
-PER_LENGTH = 200  # nearest returns of each length
-LONGEST_WORD = 400
-PER_PERIOD = (
-    4  # events of the longest cycle that are looked for per period asked for, of a self-excited machine
-)
-ITERATIONS = 12
-LONGEST = 0.2  # of the box: longer steps are shortened
-SHORTER = 3  # times a step is halved where the motion does not come back
-BEYOND = 0.5  # of the box: so far outside nothing is looked for
-WARM = (
-    3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
-)
-EVENTS = 400  # in a forcing period at most
+"""Largest distance of a cycle from its guess, relative to 1 + states: of a cycle through a fixed point, and near a return of a chaotic motion."""
+NEAR = 0.1  # largest difference of a return, relative to the extent of the motion
+TRIES = 3  # returns with the same list of events that are tried
+PER_LENGTH = 200  # nearest returns of each length that are tried
+LONGEST_WORD = 400  # events
+PER_PERIOD = 4  # events of the longest cycle per period wanted, of a self-excited machine
+ITERATIONS = 12  # of Newton's method
+LONGEST = 0.2  # largest Newton step, relative to the box
+SHORTER = 3  # halvings of a step to a point whose motion does not return
+BEYOND = 0.5  # largest distance outside the box, relative to it
+WARM = 3.0  # forcing periods simulated of each start before the search, to leave states that are never reached again
+EVENTS = 400  # per forcing period at most
 
 
 def embedded_cycles(simulator: Simulator, longest: int) -> Iterator[Orbit]:
-    """Cycles next to the nearest returns of a motion, of up to `longest` forcing periods.
+    """Find cycles of up to `longest` forcing periods near the closest returns of a motion.
 
     Parameters
     ----------
     simulator : Simulator
-        On the motion; it is moved on.
+        At a state of the motion; it is advanced.
     longest : int
-        Of a self-excited machine: a fourth of the events of the longest cycle.
+        Longest cycle in forcing periods; of a self-excited machine a quarter of its number of events.
 
     Yields
     ------
     Orbit
-        A cycle, as a rule unstable; one may come more than once.
+        A cycle, usually unstable; the same one may be yielded more than once.
 
     Notes
     -----
-    Chaotic motion comes back near each of its unstable cycles again and again, and a short piece between two near states is a guess
+    A chaotic motion returns close to each of its unstable cycles again and again; the piece between two close states is a guess
     for Newton's method (D. P. Lathrop and E. J. Kostelich, Phys. Rev. A 40 (1989) 4028).
     """
     periods, events = simulator.watched
@@ -65,7 +61,7 @@ def embedded_cycles(simulator: Simulator, longest: int) -> Iterator[Orbit]:
             if record.piled[i:j].any():
                 continue
             events = record.labels[i:j].tolist()
-            key = min(tuple(events[k:] + events[:k]) for k in range(j - i))  # wherever the cycle is begun
+            key = min(tuple(events[k:] + events[:k]) for k in range(j - i))  # the same for all rotations
             tried[key] = tried.get(key, 0) + 1
             if tried[key] > TRIES:
                 continue
@@ -77,7 +73,7 @@ def embedded_cycles(simulator: Simulator, longest: int) -> Iterator[Orbit]:
 def _returns(
     record: Trajectory, marks: np.ndarray, spread: np.ndarray, periods: int, events: int
 ) -> list[tuple[int, int]]:
-    """Pairs of marks alike in what they are and so many forcing periods (0: up to so many events) apart, the nearest ones first."""
+    """Pairs of marks with the same event that are `periods` forcing periods (0: up to `events` events) apart, the closest first."""
     times, points = record.times[marks], record.points[marks]
     first = np.arange(len(marks))
     if periods:
@@ -102,18 +98,18 @@ def _returns(
 def fixed_point(
     step: Callable[[np.ndarray], np.ndarray], x: np.ndarray, box: np.ndarray, hard: np.ndarray
 ) -> np.ndarray | None:
-    """A point with ``step(x) = x``, by Newton's method with differences; None if none is reached.
+    """Solve ``step(x) = x`` by Newton's method with finite differences; None if it does not converge.
 
     Parameters
     ----------
     step : callable
-        The map; NaN where there is no image.
+        The map; NaN if a point has no image.
     x : float array (d,)
-        Where to begin.
+        First guess.
     box : float array (d, 2)
         Smallest and largest value of each coordinate of the starts.
     hard : bool array (d,)
-        Which limits of the box cannot be passed (walls).
+        Coordinates whose limits cannot be passed (walls).
     """
     low, high = box.T
     size = high - low
@@ -160,7 +156,7 @@ def fixed_point(
 def returning_cycles(
     simulator: Simulator, starts: np.ndarray, box: np.ndarray, longest: int
 ) -> Iterator[Orbit]:
-    """Cycles of up to `longest` forcing periods with events, each once.
+    """Find cycles with events of up to `longest` forcing periods, by Newton's method on the return map, each once.
 
     Parameters
     ----------
@@ -169,7 +165,7 @@ def returning_cycles(
     starts : float array (n, 1 + d)
         Phase and coordinates.
     box : float array (1 + d, 2)
-        Smallest and largest value of these.
+        Smallest and largest value of phase and coordinates.
     longest : int
 
     Yields
@@ -179,16 +175,16 @@ def returning_cycles(
 
     Notes
     -----
-    A cycle is a fixed point of the n-th iterate of the return map, and the points from which Newton's method reaches it fill a far
-    larger part of the box than those from which the motion itself settles on it (of an unstable one: none). A machine with a mirror is
-    looked at every half period and mirrored, so that a symmetric cycle of odd period takes half as long.
+    A cycle is a fixed point of the n-th iterate of the return map. Newton's method converges to it from a far larger part of the box than
+    the motion itself does (for an unstable cycle: none). For a machine with a mirror symmetry the map is half a period followed by the mirror, so
+    that a symmetric cycle of odd period needs half the iterates.
     """
     box = box[1:]
     length, size = (0.5 if simulator.mirrored else 1.0), box[:, 1] - box[:, 0]
     known = np.empty((0, len(box)))
 
     def ahead(x: np.ndarray, count: int) -> np.ndarray:
-        """So many lengths later."""
+        """The `count`-th iterate of the map."""
         there = later(simulator, x, count * length)
         return simulator.image(there) if length == 0.5 and count % 2 else there
 
@@ -215,7 +211,7 @@ def returning_cycles(
 
 
 def _cycle_through(simulator: Simulator, x: np.ndarray, periods: int) -> Orbit | None:
-    """The cycle through a point; None if it is none that can be continued."""
+    """The cycle through a point as an orbit; None if it cannot be continued."""
     try:
         simulator.start(x)
         record = simulator.run(float(periods), EVENTS * periods)

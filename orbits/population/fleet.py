@@ -1,4 +1,4 @@
-"""Many starts under way, and the motions they are found to reach, each once."""
+"""Simulate many starts and sort them by the motions they reach, each motion solved once."""
 
 from __future__ import annotations
 
@@ -21,33 +21,31 @@ if TYPE_CHECKING:
 
 
 BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
-"""Forcing periods (or events) between two looks at a motion that is followed alone."""
-AGAIN = 8.0  # forcing periods after which a settled motion is looked at
-PATIENCE = (
-    3  # times at most a motion that does not recur is looked at again, unless others like it are seen to end
-)
-ENOUGH = 20_000  # forcing periods that chaotic motions, all those alike together, have not ended in; events of a motion that is followed alone
-LATE = 3000.0  # forcing periods between two such looks
-TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
+"""Forcing periods (or events) between two searches for a return, of a motion simulated alone."""
+AGAIN = 8.0  # forcing periods after which a settled motion is solved for
+PATIENCE = 3  # further searches for a return of a motion that has not settled, unless similar motions have settled late
+ENOUGH = 20_000  # forcing periods, of all similar chaotic motions together, after which they count as chaotic; events of a motion simulated alone
+LATE = 3000.0  # forcing periods between two such searches
+TOLD = 6  # searches after which a motion that has not settled is identified with a known one that does not
 UNENDING = ("chaotic", "quasi-periodic", "slow")
 
 
-SOLVED = 1000.0  # forcing periods whose simulation takes about as long as Newton's method for a cycle
-RARE = 32  # forcing periods of the longest recurrence looked for where neighbours come together
+SOLVED = 1000.0  # forcing periods whose simulation costs about as much as Newton's method for a cycle
+RARE = 32  # longest cycle, in forcing periods, sought of a motion whose neighbours converge to it
 
 
 Form = tuple[Hashable, np.ndarray]
-"""A motion, so that two are one if theirs are `alike`."""
+"""Canonical form of a motion: two motions are the same if their forms are `alike`."""
 
 
 class Problem(Protocol):
-    """What is asked of a motion's problem: the form of a solution that all descriptions of one motion share."""
+    """A problem with a canonical form of its solutions, equal for all descriptions of one motion."""
 
     def canonical(self, u: np.ndarray, p: float) -> Form: ...
 
 
 def distinct(cycles: Iterable[Orbit], parameter: str, p: float) -> list[tuple[Problem, np.ndarray]]:
-    """Problems and unknowns of orbits at a value of a parameter, each motion once."""
+    """Problems and unknowns of orbits at a parameter value, each motion once."""
     found: list[tuple[Problem, np.ndarray]] = []
     forms: list[Form] = []
     for orbit in cycles:
@@ -61,40 +59,42 @@ def distinct(cycles: Iterable[Orbit], parameter: str, p: float) -> list[tuple[Pr
 
 
 def alike(one: Form, other: Form) -> bool:
-    """Whether two canonical forms are those of one motion."""
+    """Whether two canonical forms belong to the same motion."""
     return one[0] == other[0] and np.allclose(one[1], other[1], atol=SIMULATING.same)
 
 
 @dataclass(frozen=True, eq=False)
 class _Marks:
-    """Where a known motion passes the section, and its mirror image, by which another motion is seen to lie on it."""
+    """Section points of a known motion and of its mirror image, to recognise other motions that lie on it."""
 
-    place: int  # among the motions
+    place: int  # index in `Fleet.motions`
     own: dict[str, np.ndarray]
-    """By the event of a self-excited machine, (m, d); "" of a forced one, at whole forcing periods."""
+    """Points (m, d) by event, of a self-excited machine; of a forced one at whole forcing periods, with the key ""."""
     image: dict[str, np.ndarray]
-    counted: np.ndarray  # which coordinates are known
+    counted: np.ndarray  # 1 for coordinates that are compared, 0 for free ones
 
     def distances(self, event: str, points: np.ndarray) -> np.ndarray:
-        """Of points (n, d) to the motion and to its mirror image, shape (2, n)."""
+        """Distances of points (n, d) from the motion and from its mirror image, shape (2, n)."""
         rows = [table.get(event, np.empty((0, points.shape[-1]))) for table in (self.own, self.image)]
         gaps = [(np.abs(points[:, None] - known) * self.counted).max(axis=2) for known in rows]
         return np.array([gap.min(axis=1, initial=np.inf) for gap in gaps])
 
 
 class Fleet:
-    """Starts of a machine, sorted by the motions they reach, each of which is kept once. Those of a flow that runs them all at once until they recur
-    are looked at when they have; else each is followed alone, and no further than until it falls onto a known motion.
+    """Starts of a machine, sorted by the motions they reach; each motion is kept once.
+
+    If the flow can simulate all starts at once (`Simulator.settle_all`), a motion is solved for when its start has settled. Otherwise each start is
+    simulated alone, until it comes close to a known motion or returns to itself.
 
     Attributes
     ----------
     motions : list of Motion
     index : int array (n,)
-        Which of them each start reaches; -1 while that is not known.
+        Motion that each start reaches; -1 while it is not known.
     mirrored : bool array (n,)
-        Whether it reaches the mirror image of that motion.
+        Whether the start reaches the mirror image of that motion.
     work : float
-        Forcing periods simulated, those that solve for cycles included.
+        Forcing periods simulated, with an equivalent for each solved cycle.
     """
 
     def __init__(
@@ -118,7 +118,7 @@ class Fleet:
         self._begun = 0.0
 
     def sorted(self) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
-        """Motions in the order of their first start, then `index` and `mirrored`."""
+        """Return the motions in the order of their first start, `index` and `mirrored`."""
         for i in range(len(self.index)):
             if self.index[i] < 0:
                 self._sort(i)
@@ -127,7 +127,7 @@ class Fleet:
         return [self.motions[k] for k in order], np.argsort(order)[self.index], self.mirrored
 
     def _sort(self, i: int) -> None:
-        """Which motion start number i reaches, or its mirror image; with it all others of a batch whose points lie on that."""
+        """Find the motion that start i reaches, and assign to it all starts of the batch that lie on the same motion."""
         if not self.free[i]:
             return self._assign(i, Motion("impossible"))
         simulator, point = self.simulator, self.points[i]
@@ -160,16 +160,16 @@ class Fleet:
         return self._unsettled(i, batch)
 
     def _looked_at(self, transient: float, longest: int, patience: int) -> Attractor:
-        """What the motion settles on."""
+        """Attractor reached from the simulator's state."""
         self.work += SOLVED
         return attracted(self.simulator, transient, longest, SIMULATING.one, patience)
 
     def _unsettled(self, i: int, batch: Batch) -> None:
-        """A motion that does not recur, judged by its growth of small differences; where it may still recur it is looked at again.
+        """Classify a motion that has not settled by its largest Lyapunov exponent; if it may still settle, simulate on.
 
-        A chaotic transient ends at a rate that does not depend on its age (T. Tel and Y.-C. Lai, Transient Chaos, 2011): that many motions have
-        not ended together tells as much as that one has not in as many times the periods. Where others did end, late, one is followed for
-        several of the lives which that lets expect; if it ends, too, all are followed as long.
+        A chaotic transient ends at a rate that does not depend on its age (T. Tel and Y.-C. Lai, Transient Chaos, 2011), so n motions that have
+        not settled in T periods give the same evidence as one that has not settled in n T. If similar starts have settled late, their number gives
+        the mean life of a transient: one motion is simulated for several mean lives, and if it settles, all are.
         """
         alike = (self.index < 0) & (batch.outcomes == Outcome.WANDERING)
         alike &= np.arange(len(alike)) >= i
@@ -194,9 +194,9 @@ class Fleet:
                 return self._found(found, i)
             self.simulator.skip(LATE)
             followed += self.simulator.time - begun
-        if kind != "chaotic":  # now that it is nearer to what it settles on
+        if kind != "chaotic":  # again, nearer to the attractor
             kind, exponent, error = self._grown()
-        if kind == "slow":  # neighbours come together: it may recur, but late
+        if kind == "slow":  # neighbours converge to it: it may be a long cycle
             found = self._looked_at(0.0, RARE, 1)
             if found.recurrent:
                 return self._found(found, i)
@@ -204,7 +204,7 @@ class Fleet:
         return self._assign(alike, Motion(kind, exponent=exponent, error=error, state=state))
 
     def _longer(self, batch: Batch, alike: np.ndarray, periods: float) -> None:
-        """Follow chaotic motions that one of them has shown to end."""
+        """Simulate chaotic motions on, after one of them has settled."""
         before = float(batch.lasted.sum())
         self.simulator.settle_longer(batch, alike, self.longest, periods, self.workers)
         self.work += float(batch.lasted.sum()) - before
@@ -242,20 +242,20 @@ class Fleet:
             return self._assign(i, unending.index(True))
         kind, exponent, error = self._grown()
         state = simulator.state.copy()
-        # where neighbours come together it may recur, but late
+        # if neighbours converge to it, it may be a long cycle
         if kind == "slow" and self._recurs(i, simulator.look(RARE), RARE):
             return None
         return self._assign(i, Motion(kind, exponent=exponent, error=error, state=state))
 
     def _recurs(self, i: int, run: Trajectory, longest: int) -> bool:
-        """Whether a run ends with a cycle, which is put on the list."""
+        """Whether a run ends with a cycle, which is added to the motions."""
         orbit = recurring(self.simulator, run, longest, SIMULATING.nearly)
         if orbit is not None:
             self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling)
         return orbit is not None
 
     def _equilibrium(self, run: Trajectory) -> tuple[Problem | None, np.ndarray | None]:
-        """The solution near the end of a self-excited motion without events; None where none is known."""
+        """Equilibrium near the last state of a self-excited motion without events, as problem and unknowns; None if there is none."""
         from orbits.flows.page.simulator import PageTrajectory
         from orbits.flows.page.smooth import rest_near
 
@@ -265,13 +265,13 @@ class Fleet:
         return (None, None) if rest is None else (rest.problem(self.parameter), rest.state)
 
     def _grown(self) -> tuple[str, float, float]:
-        """Kind of a motion that does not recur, its Lyapunov exponent per forcing period and the error of that."""
+        """Kind of a motion that has not settled, its largest Lyapunov exponent per forcing period and the standard error."""
         exponent, error = self.simulator.growth()
         self.work += 0.0 if self.batch is None else self.batch.growth
         return wandering(exponent, error, self.simulator.roomy), exponent, error
 
     def _nearest(self) -> tuple[_Marks | None, float, bool]:
-        """The known motion that the next point of the section lies nearest to, how far from it, relative to 1 + points, and whether that is its image."""
+        """The known motion nearest to the next section point, the distance relative to 1 + points, and whether its mirror image is the nearer one."""
         best: tuple[_Marks | None, float, bool] = (None, np.inf, False)
         if not self._known:
             return best
@@ -287,7 +287,7 @@ class Fleet:
     def _assign(
         self, members: np.ndarray | int, motion: Motion[Problem] | int, mirrored: np.ndarray | bool = False
     ) -> None:
-        """These starts, as far as they are free, reach a motion, or its mirror image."""
+        """Assign starts that have none yet to a motion or its mirror image."""
         k = motion if isinstance(motion, int) else self._place(motion)
         here = np.zeros(len(self.index), dtype=bool)
         here[members] = True
@@ -296,7 +296,7 @@ class Fleet:
         self.index[here] = k
 
     def _place(self, motion: Motion[Problem]) -> int:
-        """The number of a motion, which is put on the list if it is a new one."""
+        """Index of a motion, which is added if it is new."""
         form = None
         if motion.problem is not None and motion.u is not None:
             form = motion.problem.canonical(motion.u, self.p)
@@ -309,14 +309,14 @@ class Fleet:
         return len(self.motions) - 1
 
     def _solution(self, orbit: Orbit | None) -> tuple[Problem | None, np.ndarray | None]:
-        """Problem and unknowns of an orbit; None of a motion without a word."""
+        """Problem and unknowns of an orbit; None without one."""
         if orbit is None:
             return None, None
         problem = orbit.problem(self.parameter)
         return problem, orbit.seed(problem)[0]
 
     def _found(self, found: Attractor, i: int) -> None:
-        """What a motion of a batch settles on."""
+        """Add the attractor reached by start i of a batch."""
         orbit, periods = found.orbit, found.periods
         if found.kind == self.simulator.resting:
             orbit, periods = (orbit if orbit is not None and orbit.real else None), 1
@@ -325,7 +325,7 @@ class Fleet:
     def _add(
         self, i: int, orbit: Orbit | None, kind: str, periods: int, word: str, free: bool = False
     ) -> None:
-        """Put the motion on which the simulator is on the list, unless it is there, and give it all starts whose points lie on it."""
+        """Add the simulator's motion unless it is known, and assign to it all starts whose points lie on it."""
         k = self._place(
             Motion(kind, word, periods, *self._solution(orbit), state=self.simulator.state.copy())
         )
@@ -346,14 +346,14 @@ class Fleet:
         return self._assign(here, k, image < own)
 
     def _marks(self, place: int, orbit: Orbit | None, periods: int, free: bool) -> _Marks:
-        """Points of a motion and of its mirror image, where that is another one: of an orbit, or (of a batch) of that on which the simulator is."""
+        """Section points of an orbit, or in a batch of the simulator's motion, and of its mirror image if that is another motion."""
         simulator, model = self.simulator, self.model
         mirrored = model.has_mirror(self.params) and not (orbit is not None and orbit.symmetric)
         counted = np.ones(len(simulator.names))
         if orbit is not None:
             counted[[entry - 1 for entry in orbit.flow.loose(model, orbit.word)]] = 0.0
         if free:
-            counted[0] = 0.0  # a motion without impacts may lie anywhere between the walls
+            counted[0] = 0.0  # the mean position of a motion without impacts is free
         if orbit is not None and not model.forced:
             image = _after_events(orbit.mirror()) if mirrored else {}
             return _Marks(place, _after_events(orbit), image, counted)
@@ -373,6 +373,6 @@ class Fleet:
 
 
 def _after_events(orbit: Orbit) -> dict[str, np.ndarray]:
-    """The nodes' states by their events."""
+    """States of an orbit's nodes, by event."""
     letters, states = np.array(orbit.word.events), orbit.nodes[:, 1:]
     return {str(letter): states[letters == letter] for letter in np.unique(letters)}

@@ -122,7 +122,7 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
     Parameters
     ----------
     stepper : Stepper
-        On the motion; it is moved on.
+        At a state of the motion; it is advanced.
     samples : int
     """
     other = Stepper(stepper.machine, stepper.params)
