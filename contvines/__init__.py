@@ -56,10 +56,10 @@ __getattr__ = on_demand(
     __name__,
     {
         "AlgebraicProblem": "contvines.problems.algebraic",
-        "Branch": "contvines.branches.branch",
+        "Branch": "contvines.branches",
         "Embedding": "contvines.problems.protocol",
         "FlowProblem": "contvines.flows",
-        "Graph": "contvines.graph.graph",
+        "Graph": "contvines.graph",
         "Interrupted": "contvines.journal",
         "KINDS": "contvines.bifurcation.kinds",
         "Kernels": "contvines.problems.protocol",
@@ -72,7 +72,7 @@ __getattr__ = on_demand(
         "Settings": "contvines.continuation.settings",
         "SpecialPoint": "contvines.branches.special_point",
         "StepRule": "contvines.continuation.settings",
-        "Switch": "contvines.graph.graph",
+        "Switch": "contvines.graph",
         "Symmetry": "contvines.problems.protocol",
         "Attractor": "contvines.graph.contents",
         "atlas": "contvines.coexistence.build",
@@ -102,7 +102,7 @@ def __dir__() -> list[str]:
 if TYPE_CHECKING:
     from .bifurcation.kind import Kind
     from .bifurcation.kinds import KINDS
-    from .branches.branch import Branch
+    from .branches import Branch
     from .branches.special_point import SpecialPoint
     from .coexistence.basins import basins
     from .coexistence.build import atlas
@@ -111,9 +111,9 @@ if TYPE_CHECKING:
     from .continuation.settings import Settings, StepRule
     from .continuation.trace import trace
     from .flows import FlowProblem
+    from .graph import Graph, Switch
     from .graph.automatic import diagram, switch
     from .graph.contents import Attractor as Attractor
-    from .graph.graph import Graph, Switch
     from .journal import Interrupted, MemoryJournal, NullJournal
     from .loci.chart import Chart
     from .loci.charting import chart

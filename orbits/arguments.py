@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contvines.core.records import block
+from contvines.core.table import block
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

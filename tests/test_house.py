@@ -10,13 +10,13 @@ import networkx as nx
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("contvines", "orbits")
 HELD = {
-    "contvines.branches.branch",
+    "contvines.branches",
     "contvines.branches.special_point",
     "contvines.circles.circle",
     "contvines.coexistence.basins",
     "contvines.coexistence.erosion",
     "contvines.flows.orbit",
-    "contvines.graph.graph",
+    "contvines.graph",
     "contvines.loci.chart",
     "contvines.loci.locus",
     "contvines.problems.maps",

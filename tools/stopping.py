@@ -22,7 +22,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from contvines.graph.graph import Graph
+from contvines.graph import Graph
 from contvines.graph.persistence import same_graph
 from contvines.store import load
 from tests.children import adopt

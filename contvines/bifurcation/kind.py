@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from ..continuation.layout import SORTS, aim_at_multiplier
 from ..continuation.settings import hinted
 
 if TYPE_CHECKING:
@@ -42,6 +43,19 @@ class Test:
     function: Aim | Callable[[Solved], float]
     index: int = 0
     jump: float = float("inf")
+
+
+JUMP = 0.05  # change of a multiplier's logarithm over a small part of a segment: it has come from elsewhere
+
+
+def passing(segment: Segment, sort: str) -> list[Test]:
+    """One test for each multiplier of a sort ("plus", "minus", "pair") that is past the circle at one end only."""
+    engine, place = segment.engine, tuple(SORTS).index(sort)
+    one, other = segment.counts[0][place], segment.counts[1][place]
+    return [
+        Test(aim_at_multiplier(engine.m, engine.detection, sort, k), k, JUMP)
+        for k in range(min(one, other) + 1, max(one, other) + 1)
+    ]
 
 
 class Classified(NamedTuple):

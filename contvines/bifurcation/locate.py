@@ -15,7 +15,7 @@ from numpy.polynomial.chebyshev import chebder, chebval, chebvander
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import Aim, Found, Way, solved_point, solved_points
-from ..continuation.mesh_motion import MeshMotion
+from ..continuation.trace import MeshMotion
 from ..shared.numbers import EPSILON, ROUNDED
 from .scan import counts
 from .settings import LOCATING

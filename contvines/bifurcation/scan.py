@@ -16,7 +16,7 @@ import numpy as np
 from ..continuation.engine import Engine
 from ..continuation.layout import KINDS, MARGIN, Chunk
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
-from ..core.records import pack, place
+from ..core.table import pack, place
 from ..shared.numbers import CENTRAL, TINY
 from .settings import LOCATING
 

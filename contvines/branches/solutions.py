@@ -6,9 +6,9 @@ from itertools import pairwise
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from ..continuation.mesh_motion import MeshMotion
 from ..continuation.settings import Settings
-from .branch import Branch
+from ..continuation.trace import MeshMotion
+from . import Branch
 
 
 def on_segment(engine: Engine, branch: Branch, i: int, at: float) -> Solved | None:

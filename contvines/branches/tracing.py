@@ -18,8 +18,7 @@ from ..bifurcation.locate import Located, Role, Root, Segment
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, Chunk, Status
 from ..continuation.trace import Finer, Retrace, chunks
-from .finer_mesh import Meshes
-from .half_branch import HalfBranch, Piece, pack, piece_of, unpack
+from .half_branch import HalfBranch, Meshes, Piece, pack, piece_of, unpack
 
 if TYPE_CHECKING:
     from ..journal import Journal

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack, runtime_checka
 import numpy as np
 
 from ..continuation.settings import hinted, hinting
+from ..graph import Graph
 from ..graph.contents import Attractor
-from ..graph.graph import Graph
 from ..graph.table import short_word
 from ..problems.abilities import Gauged, Sectioned, notation_of
 from ..shared.figures import PlotOptions

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..bifurcation.kind import Kind
 from ..continuation.settings import Settings, hinting
+from ..graph import Graph
 from ..graph.automatic import new_run
 from ..graph.builder import finish, leave_waiting, limit_reached, tell_waiting
-from ..graph.graph import Graph
 from ..graph.run import Left, Run
 from ..journal import Journal
 from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening

@@ -9,9 +9,9 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from ..continuation.settings import Settings
+from ..graph import Graph
 from ..graph.builder import adopt, begin, trace_pending, work
 from ..graph.contents import Attractor
-from ..graph.graph import Graph
 from ..graph.run import NO_LIMITS, Limits, Run
 from ..graph.table import short_word
 from ..journal import Journal, NullJournal

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..continuation.settings import hinted, hinting
 from ..graph.table import short_word, with_unit
 from ..problems.abilities import notation_of

@@ -19,14 +19,14 @@ from ..bifurcation.scan import image_of
 from ..branches.solutions import solutions_at
 from ..circles.section import Section, Walled, section_of
 from ..continuation.settings import Settings
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..shared.numbers import TINY
 from .settings import MANIFOLDS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..branches.branch import Branch
+    from ..branches import Branch
     from ..problems.protocol import Problem
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import Settings
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..graph.identity import same_form
 from ..graph.run import Run
 from .census import run_on
 
 if TYPE_CHECKING:
-    from ..branches.branch import Branch
+    from ..branches import Branch
     from ..branches.special_point import SpecialPoint
 
 

@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..circles.section import section_of
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..graph.run import Run
 from ..graph.stretches import MEETING
 from ..problems.abilities import Population

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..branches.branch import Branch, Reason
+from ..branches import Branch, Reason
 from ..branches.solutions import solutions_at
 from ..circles.section import section_of
 from ..continuation.settings import hinting

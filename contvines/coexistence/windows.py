@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..branches.branch import Branch
+from ..branches import Branch
+from ..graph import Graph
 from ..graph.builder import begin, work
-from ..graph.graph import Graph
 from ..graph.run import Run
 from ..journal import Part
 from ..problems.abilities import Population

@@ -42,7 +42,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
 
 

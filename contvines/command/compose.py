@@ -16,7 +16,7 @@ from ..shared.near_names import did_you_mean
 from .study_data import Sort, Study, without_word
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
 
 WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with axes
 
@@ -237,7 +237,7 @@ def help_note(words: list[str]) -> str:
 def _default(path: Path) -> str:
     """The measure that is drawn of a study or graph if none is named."""
     if path.suffix == ".vines":
-        from ..graph.graph import Graph
+        from ..graph import Graph
         from ..graph.stretches import default_measure
         from ..store import load
 

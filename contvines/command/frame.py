@@ -15,7 +15,7 @@ from ..text_table import fitted
 from .options import MANY
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
 
 MOST_NAMED = 24  # labels in one sentence
@@ -167,7 +167,7 @@ def made(target: Path, fingerprint: str, study: dict[str, Any], quiet: bool, mak
 # ---------------------------------------------------------------------- results
 def load_file(file: Path, trust: bool = False, problems: bool = True) -> Graph:
     """The graph of a file; a chart is refused."""
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..store import load
 
     graph = load(file, problems=problems, trust=trust)
@@ -229,7 +229,7 @@ def refuse_unfinished(graph: Graph | Chart, file: Path) -> None:
 
 def say_state(graph: Graph | Chart, file: Path, problems: bool = True) -> None:
     """Branches that were loaded as numbers only, and why; whether the run goes on."""
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..problems.registry import without_problem
 
     for branch in graph.branches.values() if problems and isinstance(graph, Graph) else ():
@@ -254,7 +254,7 @@ def tell(found: object, data: object = None) -> None:
 
 def tell_result(found: Graph | Chart, file: Path, details: bool) -> None:
     """What matters most of a result first; then its tables where they are short, or are asked for."""
-    from ..graph.graph import Graph
+    from ..graph import Graph
 
     size = len(found.branches if isinstance(found, Graph) else found.loci)
     brief = size > MANY and not details

@@ -71,7 +71,7 @@ def _orbit(file: Path, label: str | None, trust: bool) -> object:
     if not is_database(file) and file.suffix == ".toml":
         return _solution(*_first_orbit(file, label))
     from ..branches.special_point import SpecialPoint
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..problems.registry import without_problem
     from ..store import load
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from orbits.machines.varying import Varying
 
-    from ..graph.graph import Graph
+    from ..graph import Graph
 
 GENERAL = ("--output", "--size", "--style", "--trust")  # options for every picture
 LOOKS = {

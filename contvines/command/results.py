@@ -14,7 +14,7 @@ from .options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOp
 from .run import graph_of
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
     from ..report.answer import Answer
     from ..survey.results import Survey

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from .study_data import Study
 
 SIMULATED = "#2f6f3e"
@@ -219,7 +219,7 @@ def _budget(study: Study) -> int:
 
 def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Graph:
     """The graph of a study: from its file if that is finished, computed else."""
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from .compose import first_orbit, population, run_atlas, run_diagram
 
     fingerprint = study.fingerprint(command)
@@ -250,7 +250,7 @@ def _looked(study: Study, target: Path) -> Graph:
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
     """
     from ..coexistence.census import look
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..store import Store
     from .compose import population
 

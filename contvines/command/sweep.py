@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from orbits.attractors.sweeping import SweepRow
 
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from .study_data import Study
     from .sweep_rows import Kept
 

@@ -11,8 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
-from ..core.records import pack, place
-from ..core.table import memory_of
+from ..core.table import memory_of, pack, place
 from ..long_work import wanted
 from .layout import Aim, Chunk, Control, Found, Metric, Scratch, Status, Way
 from .settings import BY_ANGLE, SOLUTION, StepRule

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .library import NUMBER, POINTER, WHOLE, address, function
-from .records import pack
+from .table import pack
 
 
 class Eliminated(NamedTuple):

@@ -1,19 +1,22 @@
 """Kernels of a compiled problem: a table of C functions behind one pointer (`Table` in native/api.h), called from Python and by native code.
 
 The `data` and the workspaces of such a problem have an attribute ``memory``: the array at whose address the functions find them.
+
+Structs of the native core are numpy arrays (`pack`, `block`): every member has eight bytes, and arrays are pointers. Native code is handed the address of
+such an array, which with all that it points to has to live as long as it is in use.
 """
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Sequence
+from functools import cache, lru_cache
+from math import prod
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from .library import NOTHING, NUMBER, POINTER, WHOLE, address, function
-from .records import place
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -212,3 +215,70 @@ class KernelFunctions(Protocol):
     def column(self) -> int: ...
     @property
     def matrix(self) -> Callable[..., np.ndarray] | None: ...
+
+
+def pack(*members: float | np.ndarray) -> np.ndarray:
+    """A struct from its members, shape (k,): floats, integers, and arrays as pointers.
+
+    Raises
+    ------
+    TypeError
+        If an array is not C-contiguous, or of other numbers than float64 and int64.
+    """
+    made = np.empty(len(members), np.int64)
+    numbers = made.view(np.float64)
+    for i, member in enumerate(members):
+        if isinstance(member, np.ndarray):
+            made[i] = place(member)
+        elif isinstance(member, float):
+            numbers[i] = member
+        else:
+            made[i] = member
+    return made
+
+
+def place(array: np.ndarray) -> int:
+    """Address of an array, which has to be one that native code can read."""
+    if not array.flags.c_contiguous or array.dtype not in (np.float64, np.int64):
+        raise TypeError(
+            f"an array of {array.dtype}, strides {array.strides}, cannot be handed to the native core"
+        )
+    return address(array)
+
+
+@lru_cache(maxsize=1024)
+def _layout(
+    head: int, shapes: tuple[tuple[int, ...], ...]
+) -> tuple[np.ndarray, tuple[tuple[int, int], ...], int]:
+    ends = np.cumsum([head + len(shapes), *map(prod, shapes)])
+    starts = ends[:-1]
+    return 8 * starts, tuple(zip(starts.tolist(), ends[1:].tolist())), int(ends[-1])
+
+
+def block(
+    head: Sequence[float | int], shapes: tuple[tuple[int, ...], ...]
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """One piece of memory: a struct that begins with the numbers of `head`, pointers to arrays, and these arrays, all zero.
+
+    Parameters
+    ----------
+    head : sequence of int and float
+    shapes : tuple of shapes
+
+    Returns
+    -------
+    memory : ndarray of float64
+        Its address is that of the struct.
+    arrays : list of ndarray
+        Views of the memory, float64.
+    """
+    places, parts, total = _layout(len(head), shapes)
+    memory = np.zeros(total)
+    whole, first = memory.view(np.int64), len(head)
+    for i, number in enumerate(head):
+        if isinstance(number, float):
+            memory[i] = number
+        else:
+            whole[i] = number
+    np.add(places, address(memory), out=whole[first : first + len(shapes)])
+    return memory, [memory[a:b].reshape(shape) for (a, b), shape in zip(parts, shapes)]

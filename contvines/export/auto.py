@@ -18,9 +18,9 @@ from ..journal import comments
 from .frames import measures_of
 
 if TYPE_CHECKING:
-    from ..branches.branch import Branch
+    from ..branches import Branch
     from ..branches.special_point import SpecialPoint
-    from ..graph.graph import Graph
+    from ..graph import Graph
 
 
 TYPES = {"fold": 2, "branch-point": 1, "symmetry-breaking": 1, "hopf": 3}

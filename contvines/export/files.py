@@ -21,7 +21,7 @@ from .frames import chart_rows, graph_columns, measures_of
 from .latex import write_latex
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
 
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-    from ..branches.branch import Branch
-    from ..graph.graph import Graph
+    from ..branches import Branch
+    from ..graph import Graph
     from ..loci.chart import Chart
 
 

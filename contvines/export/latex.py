@@ -11,7 +11,7 @@ from ..journal import comments
 from ..text_table import Table
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
 
 _SPECIAL = {
     "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.library import NOTHING, POINTER, function, native
-from ..core.records import pack, place
+from ..core.table import pack, place
 from . import mesh
 from .mesh import Rule
 

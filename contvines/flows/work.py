@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
-from ..core.records import pack, place
+from ..core.table import pack, place
 from . import mesh, sparse
 from .elimination import condense, multipliers_of, solve_collocation
 

@@ -1,5 +1,405 @@
-"""The graph of branches and switches."""
+"""Graph: branches, special points and the switches that connect them."""
 
-from .graph import Graph, Switch
+from __future__ import annotations
 
-__all__ = ["Graph", "Switch"]
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+
+from contvines.shared.near_names import did_you_mean
+
+from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import LABELS, RENAMED, kind_named
+from ..continuation.settings import hinted
+from ..journal import Resumable
+from ..problems.abilities import Several, notation_of
+from ..shared.figures import PlotOptions
+from .contents import Attractor, Unresolved
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+    from ..branches import Branch
+    from ..branches.special_point import SpecialPoint
+    from ..problems.protocol import Problem
+
+
+@dataclass(frozen=True)
+class Switch:
+    """One way from a branch to another.
+
+    Attributes
+    ----------
+    point : str
+        Label of the special point at which they meet.
+    source, target : str
+        Labels of branches.
+    kind : str
+        Kind of the special point.
+    note : str
+        At a border "persistence" or "nonsmooth fold"; remarks such as "mirror image not traced".
+    """
+
+    point: str
+    source: str
+    target: str
+    kind: str
+    note: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry of this switch in the JSON of a graph."""
+        return {
+            "point": self.point,
+            "from": self.source,
+            "to": self.target,
+            "kind": self.kind,
+            "note": self.note,
+        }
+
+
+class CurveOptions(TypedDict, total=False):
+    """Of :func:`contvines.plots.diagram.plot_diagram`: what is drawn of branches and special points."""
+
+    labels: bool | Sequence[str]
+    ends: bool
+    marks: bool | Sequence[str]
+    words: bool
+    color: str
+    name: str | None
+    inset: bool | tuple[tuple[float, float], tuple[float, float]]
+
+
+class DiagramOptions(CurveOptions, PlotOptions, total=False):
+    """Of :func:`contvines.plots.diagram.plot_diagram`."""
+
+    xlim: tuple[float, float] | None
+    ylim: tuple[float, float] | None
+
+
+@hinted
+@dataclass(eq=False)
+class Graph(Resumable):
+    """Branches and special points by label, and the switches between branches.
+
+    Attributes
+    ----------
+    parameter : str
+        Name of the continuation parameter.
+    model : dict
+        Name and fixed parameters of the model (JSON-able).
+    branches : dict of Branch
+        By label.
+    special : dict of SpecialPoint
+        By label.
+    switches : list of Switch
+        Which branches meet at which special point.
+    within : (float, float)
+        The interval of the parameter.
+    settings : dict
+        Settings of the run, ``depth`` and ``virtual`` included (JSON-able).
+    finished : bool
+        False while the run that builds it goes on, or was interrupted.
+    message : str
+        How the run ended, in words.
+    start : str
+        A sentence where the start that was given is no solution: where the branch begins instead.
+    complete : bool
+        False where branches were left waiting at ``max_branches`` or ``max_unknowns``, or the budget of an atlas was used up.
+    looked : bool
+        Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
+    proofs : dict of dict
+        By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
+    attractors : list of Attractor
+        Of an atlas: motions on which simulated starts settled, with their shares and branches.
+    missing : list of Attractor
+        Motions that simulation has found and that lie on no branch, where the graph was `looked` at.
+    unresolved : list of Unresolved
+        Stretches of branches on which special points cannot be distinguished, with what is certain on both sides.
+    """
+
+    parameter: str = "p"
+    model: dict[str, Any] = field(default_factory=dict)
+    branches: dict[str, Branch] = field(default_factory=dict)
+    special: dict[str, SpecialPoint] = field(default_factory=dict)
+    switches: list[Switch] = field(default_factory=list)
+    within: tuple[float, float] = (float("-inf"), float("inf"))
+    settings: dict[str, Any] = field(default_factory=dict)
+    finished: bool = False
+    message: str = ""
+    start: str = ""
+    complete: bool = True
+    looked: bool = False
+    proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
+    attractors: list[Attractor] = field(default_factory=list)
+    missing: list[Attractor] = field(default_factory=list)
+    unresolved: list[Unresolved] = field(default_factory=list)
+
+    def __getitem__(self, label: str):
+        if label in self.special:
+            return self.special[label]
+        if label in self.branches:
+            return self.branches[label]
+        known = ", ".join([*self.branches, *self.special]) or "none yet"
+        raise KeyError(f"the graph has no label {label!r}; it has {known}")
+
+    def __contains__(self, label: object) -> bool:
+        return label in self.special or label in self.branches
+
+    def __iter__(self):
+        yield from self.branches.values()
+
+    def __len__(self) -> int:
+        return len(self.branches)
+
+    def __str__(self) -> str:
+        from .table import shown
+
+        text = shown(self)
+        return f"{text}\n\n{self.message}" if self._cut else text
+
+    @property
+    def stopped(self) -> bool:
+        """Whether it is an atlas that has used up its budget."""
+        return bool(self.settings.get("left"))
+
+    @property
+    def _cut(self) -> bool:
+        return not self.complete and self.settings.get("max_branches") != 1
+
+    def _repr_html_(self) -> str:
+        from .table import graph_page
+
+        return graph_page(self) + (f"<p>{self.message}</p>" if self._cut else "")
+
+    def __repr__(self) -> str:
+        state = "" if self.finished else ", unfinished"
+        return f"Graph({len(self.branches)} branches, {len(self.special)} special points, {len(self.switches)} switches{state})"
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the parameter and the measures by name; none where all are plain numbers."""
+        return next((dict(b.description.get("units") or {}) for b in self.branches.values()), {})
+
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of parameter or measure; none for equations of the user's own."""
+        return notation_of(*(branch.problem for branch in self.branches.values()))
+
+    def on(self, branch: str) -> list[SpecialPoint]:
+        """The special points of a branch, in order along it.
+
+        Raises
+        ------
+        KeyError
+            If there is no such branch.
+        """
+        if branch not in self.branches:
+            raise KeyError(f"the graph has no branch {branch!r}; it has {', '.join(self.branches) or 'none'}")
+        return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
+
+    def of_kind(self, kind: str) -> list[SpecialPoint]:
+        """The special points of a kind, in the order of their labels.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind.
+        """
+        known = {**LABELS, **{name: entry.label for name, entry in self.own_kinds.items()}}
+        kind = RENAMED.get(kind, kind)
+        if kind not in known:
+            named = next((name for name, prefix in known.items() if prefix == kind), None)
+            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, known)
+            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(known)}")
+        return [point for point in self.special.values() if point.kind == kind]
+
+    @property
+    def own_kinds(self) -> dict[str, Kind]:
+        """The user's own kinds by name; of a graph from a file what they are called and drawn as."""
+        return {look["name"]: Kind(**look) for look in self.settings.get("kinds", [])}
+
+    def kind(self, name: str) -> Kind:
+        """The kind of this name, built in or the user's own: its label, text and mark."""
+        return kind_named(name, self.own_kinds)
+
+    def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
+        """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""
+        from .proving import prove
+
+        return prove(self, labels, **options)
+
+    def attach(self, problem: Problem | Several) -> None:
+        """Give all branches and special points without a problem this one, or that of a flow (after loading a callable's graph)."""
+        own = {
+            label: problem.problem_of(branch.description) if isinstance(problem, Several) else problem
+            for label, branch in self.branches.items()
+        }
+        for label, branch in self.branches.items():
+            if branch.problem is None and branch.points.shape[1] == own[label].dimension:
+                branch.problem = own[label]
+        for point in self.special.values():
+            if point.problem is None and len(point.u) == own[point.branch].dimension:
+                point.problem = own[point.branch]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The graph as JSON-able dict: model, parameter, branches, special, switches."""
+        return {
+            "model": self.model,
+            "parameter": self.parameter,
+            "within": list(self.within),
+            **({"units": self.units} if self.units else {}),
+            "finished": self.finished,
+            "message": self.message,
+            **({"start": self.start} if self.start else {}),
+            "branches": [branch.to_dict() for branch in self.branches.values()],
+            "special": [point.to_dict() for point in self.special.values()],
+            "switches": [switch.to_dict() for switch in self.switches],
+            **({"unresolved": [u.to_dict() for u in self.unresolved]} if self.unresolved else {}),
+            **({"proofs": self._claims()} if self.proofs else {}),
+            **({"attractors": [a.to_dict() for a in self.attractors]} if self.attractors else {}),
+            **({"missing": [a.to_dict() for a in self.missing]} if self.missing else {}),
+        }
+
+    def _claims(self) -> dict[str, Any]:
+        """What is proved, without the certificates."""
+        return {
+            label: {name: value for name, value in proof.items() if name != "certificate"}
+            for label, proof in self.proofs.items()
+        }
+
+    def nodes(self) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Branches as nodes of a network: label and attributes."""
+        return ((branch.label, branch.to_dict()) for branch in self.branches.values())
+
+    def edges(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """Links between branches as edges of a network: labels of both branches, and attributes."""
+        for switch in self.switches:
+            point = self.special[switch.point]
+            yield (
+                switch.source,
+                switch.target,
+                {
+                    "point": switch.point,
+                    "kind": switch.kind,
+                    "value": float(point.value),
+                    "criticality": point.criticality,
+                    "note": switch.note,
+                },
+            )
+
+    def network(self):
+        """The graph as networkx MultiDiGraph: nodes are branches, edges are switches.
+
+        Raises
+        ------
+        ValueError
+            If networkx is not installed.
+        """
+        from ..shared.on_demand import needed
+
+        networkx = needed("networkx", "tables")
+        network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
+        network.add_nodes_from(self.nodes())
+        for a, b, data in self.edges():
+            network.add_edge(a, b, data["point"], **data)
+        return network
+
+    def merge(self, other: Graph) -> dict[str, str]:
+        """Add what another graph of the same problem has beside it; see :func:`contvines.coexistence.merging.merge`."""
+        from ..coexistence.merging import merge
+
+        return merge(self, other)
+
+    def to_pandas(self):
+        """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
+        from ..export.frames import graph_frame
+
+        return graph_frame(self)
+
+    def points_to_pandas(self):
+        """The special points as a data frame; see :func:`contvines.export.frames.points_frame`."""
+        from ..export.frames import points_frame
+
+        return points_frame(self)
+
+    def to_xarray(self):
+        """All points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
+        from ..export.frames import graph_dataset
+
+        return graph_dataset(self)
+
+    def export(self, path: str | Path, to: str | None = None) -> Path:
+        """Write the graph for other programs.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of ``"auto"`` the name that b.NAME, s.NAME and d.NAME share.
+        to : {"csv", "json", "graphml", "mat", "latex", "auto", "xpp"}, optional
+            By default what the ending of `path` says.
+
+        Returns
+        -------
+        Path
+            The file that was written.
+
+        Raises
+        ------
+        ValueError
+            If there is no such format, or the place cannot be written.
+        """
+        from ..export import export
+
+        return export(self, to, path)
+
+    def plot(self, x: str | None = None, y: str | None = None, **options: Unpack[DiagramOptions]) -> Figure:
+        """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
+        from ..plots.diagram import plot_diagram
+
+        return plot_diagram(self, x=x, y=y, **options)
+
+    def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """The graph as (kind, key, content), as files keep it."""
+        from .persistence import graph_entries
+
+        return graph_entries(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write the graph to a .vines file, which :func:`contvines.load` reads.
+
+        Raises
+        ------
+        ValueError
+            If the place cannot be written, or holds a file that is not ours.
+        """
+        from pathlib import Path
+
+        place = Path(path)
+        if place.is_dir():
+            raise ValueError(f"{place}: this is a folder; give the name of a file in it.")
+        if not place.parent.is_dir():
+            raise ValueError(
+                f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."
+            )
+        from ..store import save
+
+        save(self, path)
+
+    @classmethod
+    def load(cls, path: str | Path, *, trust: bool = False) -> Graph:
+        """Read a graph from a .vines file; see :func:`contvines.load`.
+
+        Raises
+        ------
+        ValueError
+            If the file holds a chart.
+        """
+        from ..store import load
+
+        found = load(path, trust=trust)
+        if not isinstance(found, Graph):
+            raise ValueError(f"{path}: this file holds a chart; contvines.load reads it")
+        return found

@@ -15,8 +15,8 @@ from ..continuation.starts import check_interval, problem_and_start
 from ..journal import Journal, NullJournal
 from ..long_work import Asked, OnInterrupt, Tell, carried_out
 from ..problems.registry import without_problem
+from . import Graph
 from .builder import adopt, begin, finish, work
-from .graph import Graph
 from .run import NO_LIMITS, Limits, Progress, Run
 from .schedule_branches import leave, why_nothing_leaves
 

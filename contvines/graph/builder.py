@@ -13,9 +13,8 @@ from ..bifurcation.detect import Detector
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.scan import sizes_by_sort
 from ..bifurcation.settings import LOCATING
-from ..branches.branch import Ending, Reason
-from ..branches.finer_mesh import Meshes
-from ..branches.half_branch import HalfBranch, filled, make_branch
+from ..branches import Ending, Reason
+from ..branches.half_branch import HalfBranch, Meshes, filled, make_branch
 from ..branches.tracing import from_border, on_this_side, trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, Status

@@ -17,7 +17,7 @@ from ..shared.numbers import number_text
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..branches.branch import Branch
+    from ..branches import Branch
 
 STABLE = {True: ", stable", False: ", unstable", None: ""}
 MOST = 10  # stretches of one branch that are listed

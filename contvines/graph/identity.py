@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings

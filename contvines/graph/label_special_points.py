@@ -15,7 +15,7 @@ from ..bifurcation.locate import Located, Role
 from ..bifurcation.location_error import mesh_error, missed, singular_within
 from ..bifurcation.scan import counts
 from ..bifurcation.switching import null_vectors
-from ..branches.branch import Branch, Ending, Reason
+from ..branches import Branch, Ending, Reason
 from ..branches.half_branch import HalfBranch, a_sliver, stability
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.locate import Located
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..branches.special_point import SpecialPoint
 from ..journal import NullJournal
 from ..problems.abilities import Onward

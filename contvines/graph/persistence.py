@@ -18,12 +18,12 @@ import numpy as np
 
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import RENAMED, kind_named
-from ..branches.branch import Branch, Ending
+from ..branches import Branch, Ending
 from ..branches.special_point import Later, SpecialPoint
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
+from . import Graph, Switch
 from .contents import Attractor, Unresolved
-from .graph import Graph, Switch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

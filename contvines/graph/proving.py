@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
-from ..branches.branch import Branch
+from ..branches import Branch
 
 if TYPE_CHECKING:
-    from .graph import Graph
+    from . import Graph
 
 
 @runtime_checkable

@@ -15,13 +15,13 @@ from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import KINDS, kind_named
 from ..bifurcation.locate import Located
-from ..branches.branch import Ending, Reason
+from ..branches import Ending, Reason
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
 from ..long_work import OPEN, time_left
 from ..problems.protocol import Problem
-from .graph import Graph, Switch
+from . import Graph, Switch
 from .identity import Register
 
 if TYPE_CHECKING:

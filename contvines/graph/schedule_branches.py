@@ -11,18 +11,17 @@ from numpy.typing import NDArray
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.locate import Role
 from ..bifurcation.location_error import rounding_of_parameter
-from ..bifurcation.normal_forms.along_branch import criticality, crossing_speed, fold_coefficient
-from ..bifurcation.normal_forms.criticality import cubic_form
+from ..bifurcation.normal_forms.criticality import criticality, crossing_speed, cubic_form, fold_coefficient
 from ..bifurcation.scan import SymmetryTest, counts
 from ..bifurcation.switching import Departure, departures
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..long_work import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Embedding, Problem
-from .graph import Graph
+from . import Graph
 from .match_borders import cross
 from .run import Origin, Pending, Run
 

@@ -14,9 +14,9 @@ from contvines.shared.near_names import did_you_mean
 from ..continuation.settings import Settings
 
 if TYPE_CHECKING:
-    from ..branches.branch import Branch
+    from ..branches import Branch
     from ..branches.special_point import SpecialPoint
-    from .graph import Graph
+    from . import Graph
 
 
 @dataclass(frozen=True)

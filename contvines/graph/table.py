@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS, KINDS
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.settings import Settings
 from ..shared.motions import MODULATIONS
 from ..shared.numbers import PART, complex_figures, figures, figures_in
 from ..shared.numbers import number_text as number
 from ..text_table import Table, fitted, terminal_width
+from . import Graph
 from .contents import Attractor, proof_mark, proof_text, sentences
-from .graph import Graph
 from .stretches import Stretch, at_points, default_measure, gaps, stretches, united
 
 MOST = 8  # motions that a summary lists

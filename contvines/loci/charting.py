@@ -9,7 +9,7 @@ from ..bifurcation.kind import Kind
 from ..branches.special_point import SpecialPoint
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..journal import Journal, NullJournal
 from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
 from .chart import Chart

@@ -16,7 +16,7 @@ from ..branches.solutions import on_segment
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..graph.identity import same_form
 from ..journal import Journal
 from ..long_work import time_left

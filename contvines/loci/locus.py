@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import critical
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..branches.solutions import on_segment
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings, hinted

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..shared.numbers import TINY

@@ -13,8 +13,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kind import Kind, number_of
 from ..bifurcation.kinds import critical
 from ..core.library import native
-from ..core.records import pack
-from ..core.table import TableKernels, memory_of, native_table
+from ..core.table import TableKernels, memory_of, native_table, pack
 from ..problems.abilities import notation_of
 from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, array_of
 from .kernels import (

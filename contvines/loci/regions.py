@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..continuation.engine import Engine
 from ..continuation.layout import MARGIN, Solved
 from ..continuation.settings import Settings

@@ -11,9 +11,8 @@ from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME, checked
 from ..bifurcation.locate import Located, Role
-from ..branches.branch import Branch, Ending
-from ..branches.finer_mesh import Meshes
-from ..branches.half_branch import HalfBranch, make_branch
+from ..branches import Branch, Ending
+from ..branches.half_branch import HalfBranch, Meshes, make_branch
 from ..branches.special_point import SpecialPoint
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved

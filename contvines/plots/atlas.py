@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
+from ..graph import CurveOptions, Graph
 from ..graph.contents import Attractor
-from ..graph.graph import CurveOptions, Graph
 from ..graph.table import told_apart
 from .basins import COLORS
 from .diagram import draw_diagram

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ..branches.branch import Branch
+from ..branches import Branch
 
 CORNER = 0.06  # radians: a turn between neighbouring segments on the page that the eye sees
 SHORT = 4.0  # pixels: a segment this short needs no refinement

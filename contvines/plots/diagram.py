@@ -19,8 +19,8 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
+from ..graph import Graph
 from ..graph.contents import proof_mark, proved_stretches
-from ..graph.graph import Graph
 from ..graph.stretches import default_measure, measure_at, measured, undrawn
 from ..graph.table import motion_name, told_apart
 from .curves import Curve

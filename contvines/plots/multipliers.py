@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..continuation.settings import hinting
 from ..problems.abilities import notation_of
 from .figures import Size, Style, panels, root

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from matplotlib.text import Text
 
-from ..branches.branch import Branch
+from ..branches import Branch
 from ..continuation.settings import hinting
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..graph.table import short_word
 from .figures import Size, Style, drawing, fit, settle
 from .labels import Ground

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..bifurcation.kinds import BY_NAME
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.locus import Locus
     from ..survey.results import Survey
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
-from ..graph.graph import Graph
+from ..graph import Graph
 from .diagram import draw_diagram
 from .figures import Size, Style, drawing, narrower
 from .legends import NARROW, draw_legend

@@ -20,10 +20,10 @@ from ..shared.motions import attracts, onto_axis, onto_circle
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..branches.branch import Branch
+    from ..branches import Branch
     from ..branches.special_point import SpecialPoint
+    from ..graph import Graph
     from ..graph.contents import Attractor
-    from ..graph.graph import Graph
     from ..loci.chart import Chart
     from ..loci.locus import Locus, PlanePoint
     from ..loci.regions import Region

@@ -15,7 +15,7 @@ from ..export import json_text
 from ..shared.on_demand import needed
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
     from ..survey.results import Survey
 
@@ -64,7 +64,7 @@ def write_report(
 
 def content_of(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[str, Any]]:
     """Which page shows a result, and the data for it."""
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
 
     if isinstance(result, Graph):

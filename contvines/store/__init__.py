@@ -11,8 +11,7 @@ from contvines.shared.on_demand import on_demand
 if TYPE_CHECKING:
     from .database import Store
     from .files import load, resume, save
-    from .on_disk import APPLICATION_ID, VERSION, StoreError
-    from .packing import printable
+    from .on_disk import APPLICATION_ID, VERSION, StoreError, printable
 
 __all__ = ["APPLICATION_ID", "VERSION", "Store", "StoreError", "load", "printable", "resume", "save"]
 
@@ -21,7 +20,6 @@ __getattr__ = on_demand(
     {
         "Store": "contvines.store.database",
         **dict.fromkeys(("load", "resume", "save"), "contvines.store.files"),
-        **dict.fromkeys(("APPLICATION_ID", "VERSION", "StoreError"), "contvines.store.on_disk"),
-        "printable": "contvines.store.packing",
+        **dict.fromkeys(("APPLICATION_ID", "VERSION", "StoreError", "printable"), "contvines.store.on_disk"),
     },
 )

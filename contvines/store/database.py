@@ -23,14 +23,20 @@ from .on_disk import (
     check_header,
     cut_short,
     damaged,
+    digest_of,
     draft_of,
+    found_again,
+    packed,
     pending,
+    printable,
+    printable_text,
     publish,
+    split,
+    unpacked,
 )
-from .packing import digest_of, found_again, packed, printable, printable_text, split, unpacked
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..journal import Kept
     from ..loci.chart import Chart
 

@@ -17,7 +17,7 @@ from ..bifurcation.kinds import BORDERS, RENAMED
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
 
 

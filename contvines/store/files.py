@@ -13,7 +13,7 @@ from .database import Store
 from .on_disk import TAILS, check_header, draft_of
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from ..loci.chart import Chart
 
 Result = TypeVar("Result", bound=Resumable)

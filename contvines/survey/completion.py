@@ -12,7 +12,7 @@ from contvines.shared.motions import BAND, modulation_of
 
 from ..coexistence.census import Counted, add_root, census, followed, join, locate, run_on
 from ..coexistence.places import Handover
-from ..graph.graph import Graph
+from ..graph import Graph
 from ..graph.run import Limits, Run
 from ..graph.stretches import COVERAGE, SIMULATED, default_measure, gaps, spread, stretches, unseen
 from ..problems.abilities import Population

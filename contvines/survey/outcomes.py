@@ -19,7 +19,7 @@ from ..graph.stretches import COVERAGE, default_measure, gaps, highest, stretche
 from ..shared.numbers import figures_in
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from ..graph import Graph
     from .completion import Unbranched
 
 Simulated = tuple[float, Mapping[str, float], str]

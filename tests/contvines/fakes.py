@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from contvines.branches.branch import Branch, Ending
+from contvines.branches import Branch, Ending
 from contvines.branches.special_point import SpecialPoint
-from contvines.graph.graph import Graph, Switch
+from contvines.graph import Graph, Switch
 
 
 def pitchfork_graph(finished: bool = True) -> Graph:

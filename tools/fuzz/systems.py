@@ -23,7 +23,7 @@ import numpy as np
 import sympy as sy
 
 import contvines as cv
-from contvines.branches.branch import Reason
+from contvines.branches import Reason
 
 LOW, HIGH, CLOSE = -2.0, 2.0, 3e-3
 WIDE = 1e-8  # an unresolved interval that counts

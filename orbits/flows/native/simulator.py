@@ -177,12 +177,13 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
 
     def rests(self, run: NativeTrajectory, last: bool) -> bool | None:
         """Whether the absorber sticks for good; an oscillator may still be growing, or between two beats."""
-        begin, rest = run.start, self.model.rest
+        begin = run.start
         if run.status != REST and (len(run) or begin[RATE] != 0.0 or begin[MODE] != 0.0):
             return False
         if last:
             self._oscillator_settles()
             return True
+        rest = self.model.rest
         slips = rest.reserve(self.params, rest.solved(self.params)) <= -SIMULATING.held
         return None if slips or not self._oscillator_settles() else True
 

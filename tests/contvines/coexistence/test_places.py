@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contvines.branches.branch import Branch
+from contvines.branches import Branch
 from contvines.coexistence.places import changes, scattered, unasked
-from contvines.graph.graph import Graph
+from contvines.graph import Graph
 
 
 @given(st.integers(0, 1000), st.integers(2, 400))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contvines.graph.graph import Graph
+from contvines.graph import Graph
 from contvines.graph.persistence import same_graph
 from contvines.store import Store, load
 from contvines.store.differences import differences, of_chart

@@ -8,7 +8,7 @@ import pytest
 
 from contvines.graph.persistence import graph_entries
 from contvines.store import Store, StoreError, load, save
-from contvines.store.packing import digest_of
+from contvines.store.on_disk import digest_of
 from tests.contvines import fakes
 
 ENTRIES = {(kind, key): content for kind, key, content in graph_entries(fakes.pitchfork_graph())}

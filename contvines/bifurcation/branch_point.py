@@ -12,23 +12,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...continuation.engine import Engine, Solved
-from ...continuation.layout import NO_COLUMNS, SIGN, Aim, aim_at_multiplier
-from ...shared.numbers import TINY
-from ..consistency import (
-    alone,
-    is_astray,
-    passes,
-    passes_for_certain,
-    singular,
-    turned,
-    unresolved,
-)
-from ..kind import Kind
-from ..locate import Located, Role, Root, Segment, locate, locate_singular
-from ..location_error import blurred
-from ..scan import balance, counts, sizes_by_sort
-from .multipliers import passing
+from ..continuation.engine import Engine, Solved
+from ..continuation.layout import NO_COLUMNS, SIGN, Aim, aim_at_multiplier
+from ..shared.numbers import TINY
+from .consistency import alone, is_astray, passes, passes_for_certain, singular, turned, unresolved
+from .kind import Kind, passing
+from .locate import Located, Role, Root, Segment, locate, locate_singular
+from .location_error import blurred
+from .scan import balance, counts, sizes_by_sort
 
 WIDTH = 0.02  # part of a segment, either side of a place that is known already
 AT_SIGNS = Aim(SIGN, NO_COLUMNS)
@@ -202,7 +193,7 @@ def _near(segment: Segment, position: float, others: list[float]) -> bool:
     return any(abs(position - other) <= segment.engine.settings.near for other in others)
 
 
-KIND = Kind(
+BRANCH_POINT = Kind(
     "branch-point",
     "BP",
     text="branch point",
