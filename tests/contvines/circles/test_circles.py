@@ -7,9 +7,9 @@ import pytest
 
 import contvines as cv
 from contvines.circles.invariance import rotation_number
-from contvines.command.cli import app
 from orbits import Coupled
 from tests.contvines.loci.systems import R, generalized_henon, generalized_henon_at
+from tests.machines import STRONG
 
 ANGLE, TWIST = 1.1, 0.4
 SHEAR = np.array([[1.3, 0.4], [-0.2, 0.8]])
@@ -55,91 +55,82 @@ def test_averages_of_a_quasi_periodic_sequence():
     assert value == pytest.approx(golden, abs=1e-12) and error < 1e-8
 
 
+def response(forcing, frequency, within):
+    """Two impacts a period against the frequency."""
+    orbit = Coupled(**STRONG, damping=1.0, forcing=forcing).orbit("LR", frequency=frequency)
+    return cv.diagram(orbit, over="frequency", within=within, depth=0)
+
+
 @pytest.fixture(scope="module")
 def coupled():
-    machine = Coupled(
-        forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
-    )
-    orbit = machine.orbit("LR", frequency=1.02)
-    return cv.diagram(orbit, over="frequency", within=(1.018, 1.027), depth=0)
+    return response(2.47, 1.02, (1.018, 1.027))
 
 
-def bodies(machine):
-    """From w, w', v, v' to the states of the page's two bodies, and their places: w = q1 - q2, v = q1 + eps q2."""
-    eps = 0.006
-    to_bodies = np.kron(np.array([[eps, 1.0], [-1.0, 1.0]]) / (1 + eps), np.eye(2))
-    return to_bodies, [list(machine.states).index(name) for name in ("q1", "v1", "q2", "v2")]
-
-
-@pytest.mark.slow
-def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
+@pytest.fixture
+def stroboscope():
+    """One period of the page's two bodies by another simulator, in w, w', v, v': w = q1 - q2, v = q1 + eps q2."""
     pytest.importorskip("heyoka")
     from tools.pages.pages import page
 
+    machine, eps = page("coupled"), STRONG["mass_ratio"]
+    to_bodies = np.kron(np.array([[eps, 1.0], [-1.0, 1.0]]) / (1 + eps), np.eye(2))
+    order = [list(machine.states).index(name) for name in ("q1", "v1", "q2", "v2")]
+
+    def at(**values):
+        section = machine.orbit("LR", **values).problem("frequency").section(values["frequency"])
+
+        def step(x):
+            start = np.zeros(4)
+            start[order] = to_bodies @ x
+            return np.linalg.solve(to_bodies, section.step(start)[order])
+
+        return step
+
+    return at
+
+
+@pytest.mark.slow
+def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled, stroboscope):
     found = coupled["NS1"].circles(to=1.0245)
     assert found.coefficient > 0.0 and not any(c.stable for c in found.circles)
+    assert found.names == ("w", "w_rate", "v", "v_rate")
     for circle in found.circles[:2]:
         assert circle.radius == pytest.approx(circle.predicted, rel=0.15)
-    circle, machine = found[-1], page("coupled")
-    orbit = machine.orbit("LR", frequency=circle.value)
-    section = orbit.problem("frequency").section(circle.value)
-    assert found.names == ("w", "w_rate", "v", "v_rate")
-    to_bodies, order = bodies(machine)
-    phases = np.linspace(0.1, 6.0, 5)
+    circle = found[-1]
+    step, phases = stroboscope(frequency=circle.value), np.linspace(0.1, 6.0, 5)
     for x, image in zip(circle.at(phases), circle.at(phases + 2 * np.pi * circle.rotation)):
-        start = np.zeros(4)
-        start[order] = to_bodies @ x
-        there = section.step(start)[order]
-        assert np.linalg.inv(to_bodies) @ there == pytest.approx(image, abs=1e-7)
+        assert step(x) == pytest.approx(image, abs=1e-7)
 
 
 @pytest.mark.slow
-def test_the_modulated_response_of_the_coupled_absorber_attracts():
+def test_the_modulated_response_of_the_coupled_absorber_attracts(stroboscope):
     """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
-    pytest.importorskip("heyoka")
-    from tools.pages.pages import page
-
-    settings = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
-    orbit = Coupled(forcing=1.05, **settings).orbit("LR", frequency=0.9995)
-    graph = cv.diagram(orbit, over="frequency", within=(0.999, 1.0), depth=0)
-    (point,) = graph.of_kind("neimark-sacker")
+    (point,) = response(1.05, 0.9995, (0.999, 1.0)).of_kind("neimark-sacker")
     assert point.criticality == "supercritical"
     found = point.circles(to=0.99978)
-    circle, machine = found[-1], page("coupled")
+    circle = found[-1]
     assert circle.stable and circle.simulated == pytest.approx(circle.rotation, abs=1e-9)
-    there = {"frequency": circle.value, "forcing": 1.05}
-    section = machine.orbit("LR", **there).problem("frequency").section(circle.value)
-    to_bodies, order = bodies(machine)
+    step = stroboscope(frequency=circle.value, forcing=1.05)
     dense = circle.at(np.linspace(0.0, 2.0 * np.pi, 2001))
-
-    def far(x):
-        return np.abs(dense - np.linalg.solve(to_bodies, x[order])).max(axis=1).min()
-
     for factor in (0.9, 1.1):  # from inside and from outside
-        x = np.zeros(4)
-        x[order] = to_bodies @ (found.centre + factor * (circle.points[0] - found.centre))
-        distances = [far(x)]
-        for _ in range(4):
-            for _ in range(500):
-                x = section.step(x)
-            distances.append(far(x))
-        assert distances[-1] < 0.1 * distances[0], distances
+        x = found.centre + factor * (circle.points[0] - found.centre)
+        distances = [np.abs(dense - x).max(axis=1).min()]
+        for _ in range(2000):
+            x = step(x)
+        distances.append(np.abs(dense - x).max(axis=1).min())
+        assert distances[1] < 0.1 * distances[0]
 
 
 @pytest.mark.slow
-def test_command_line(coupled, tmp_path, monkeypatch):
-    from typer.testing import CliRunner
-
-    monkeypatch.chdir(tmp_path)
-    coupled.save("response.vines")
-    line = ["circle", "response.vines", "NS1", "--to", "1.0252", "--json", "--plot", "circle.png"]
-    result = CliRunner().invoke(app, line)
-    assert result.exit_code == 0, result.output
-    data = json.loads(result.output)
+def test_command_line(coupled, run, tmp_path):
+    coupled.save(tmp_path / "response.vines")
+    line = "circle response.vines NS1 --to 1.0252 --json --plot circle.png"
+    status, out, err = run(*line.split())
+    assert status == 0, err
+    data = json.loads(out)
     assert data["parameter"] == "frequency" and data["circles"][-1]["value"] == pytest.approx(1.0252)
     assert (tmp_path / "circle.png").exists()
-    bad = CliRunner().invoke(app, ["circle", "response.vines", "LP7"])
-    assert "its Neimark-Sacker points are NS1" in str(bad.exception)
+    assert "its Neimark-Sacker points are NS1" in run("circle", "response.vines", "LP7")[2]
 
 
 def iterated(al, be, v, count):

@@ -4,13 +4,9 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.flows.shooting import landau
 
-# x' = x (mu - r^2) - y, y' = y (mu - r^2) + x: a cycle of radius sqrt(mu) and period 2 pi, born at mu = 0
-HOPF = cv.FlowProblem(
-    lambda x, p: [x[0] * (p.mu - x[0] ** 2 - x[1] ** 2) - x[1], x[1] * (p.mu - x[0] ** 2 - x[1] ** 2) + x[0]],
-    [0.0, 0.0],
-    {"mu": -0.5},
-)
+HOPF = cv.FlowProblem(landau, [0.0, 0.0], {"mu": -0.5})
 
 
 @pytest.fixture(scope="module")
@@ -24,20 +20,16 @@ def folder(tmp_path_factory):
 
 def test_branches(folder):
     """Columns of 19 letters; stable points have negative numbers; the cycle has AUTO's type of a Hopf point where it begins."""
-    lines = (folder / "b.hopf").read_text().splitlines()
-    heads = [line for line in lines if " PT " in line]
+    lines, width = (folder / "b.hopf").read_text().splitlines(), 19
+
+    def cells(line):
+        return [line[k : k + width].strip() for k in range(width, len(line), width)]
+
+    names = cells([line for line in lines if " PT " in line][1])
     rows = [line for line in lines if int(line[:4]) > 0]
-    width = 19
-    for line in rows:
-        assert (len(line) - width) % width == 0
+    assert not any(len(line) % width for line in rows)
     cycles = [line for line in rows if int(line[:4]) == 2]
-    names = [heads[1][width + k : width + k + width].strip() for k in range(0, len(heads[1]) - width, width)]
-    values = np.array(
-        [
-            [float(line[width + k : 2 * width + k]) for k in range(0, len(line) - width, width)]
-            for line in cycles
-        ]
-    )
+    values = np.array([cells(line) for line in cycles], dtype=float)
     mu, period = values[:, names.index("mu")], values[:, names.index("period")]
     np.testing.assert_allclose(period, 2 * np.pi, atol=1e-8)
     np.testing.assert_allclose(values[:, names.index("max x0")][mu > 0.1], np.sqrt(mu[mu > 0.1]), rtol=1e-6)
@@ -58,9 +50,7 @@ def test_solutions_are_read_and_followed(folder):
 
 def test_numbers_as_fortran_writes_them(tmp_path):
     """An equilibrium of a file with exponents D and without a letter."""
-    head = (
-        f"{1:6d}{1:6d}{9:6d}{1:6d}{1:6d}{1:6d}{1:8d}{3:6d}{2:8d}{0:5d}{0:5d}{1:5d}{0:5d}{2:5d}{1:5d}{0:5d}\n"
-    )
+    head = " 1 1 9 1 1 1 1 3 2 0 0 1 0 2 1 0\n"
     (tmp_path / "s.x").write_text(head + "  0.0 1.5D+00 -2.0-101\n   0.25E+000\n")
     (one,) = cv.flows.read_auto(tmp_path / "s.x")
     assert one.states.tolist() == [[1.5, -2e-101]] and one.parameters.tolist() == [0.25]
@@ -75,9 +65,8 @@ def test_points_of_xppaut(folder):
     """Types 1 and 2: stable and unstable equilibria, 3: stable cycles."""
     rows = np.loadtxt(folder / "hopf.dat")
     mu, high, low, kind, branch = rows.T
-    assert set(kind[(branch == 1) & (mu < -1e-9)]) == {1.0} and set(kind[(branch == 1) & (mu > 1e-9)]) == {
-        2.0
-    }
+    assert set(kind[(branch == 1) & (mu < -1e-9)]) == {1.0}
+    assert set(kind[(branch == 1) & (mu > 1e-9)]) == {2.0}
     big = (branch == 2) & (mu > 0.1)
     assert set(kind[big]) == {3.0}
     np.testing.assert_allclose(high[big], np.sqrt(mu[big]), rtol=1e-6)

@@ -18,19 +18,36 @@ def graph():
     return fakes.pitchfork_graph()
 
 
-def test_csv_has_every_point_at_full_precision(graph, tmp_path):
-    path = export(graph, "csv", tmp_path / "g.csv")
-    with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
+@pytest.fixture
+def written(tmp_path):
+    """Exports a graph, and reads it back."""
+
+    def go(graph, form):
+        path = export(graph, form, tmp_path / f"g.{form}")
+        if form == "csv":
+            with path.open(newline="") as file:
+                return list(csv.DictReader(file))
+        if form == "mat":
+            return loadmat(path, simplify_cells=True)
+        if form == "graphml":
+            return networkx.read_graphml(path, force_multigraph=True)
+        text = path.read_text()
+        assert "NaN" not in text and "Infinity" not in text
+        return json.loads(text) if form == "json" else text
+
+    return go
+
+
+def test_csv_has_every_point_at_full_precision(graph, written):
+    rows = written(graph, "csv")
     assert len(rows) == sum(len(b) for b in graph.branches.values())
     for branch in graph.branches.values():
         mine = [r for r in rows if r["branch"] == branch.label]
         assert [float(r["p"]) for r in mine] == branch.values.tolist()
         assert [float(r["u0"]) for r in mine] == branch.points[:, 0].tolist()
         assert [r["stable"] == "1" for r in mine] == branch.stable.tolist()
-        assert [
-            complex(float(r["multiplier0_re"]), float(r["multiplier0_im"])) for r in mine
-        ] == branch.multipliers[:, 0].tolist()
+        found = [complex(float(r["multiplier0_re"]), float(r["multiplier0_im"])) for r in mine]
+        assert found == branch.multipliers[:, 0].tolist()
     assert [(r["branch"], int(r["index"])) for r in rows if r["special"] == "BP1"] == [("B1", 20), ("B2", 0)]
 
 
@@ -48,12 +65,11 @@ class Measured:
         }
 
 
-def test_csv_and_mat_have_word_periods_and_measures(graph, tmp_path):
+def test_csv_and_mat_have_word_periods_and_measures(graph, written):
     branch = graph.branches["B2"]  # the parabola p = u^2
     branch.problem = Measured()
     branch.description = {"word": "LR", "periods": 3}
-    with export(graph, "csv", tmp_path / "g.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = written(graph, "csv")
     head = list(rows[0])
     assert head[:8] == ["branch", "index", "p", "stable", "real", "margin", "special", "u0"]
     assert head[8:] == ["multiplier0_re", "multiplier0_im", "word", "periods", "norm", "double", "triple"]
@@ -66,36 +82,32 @@ def test_csv_and_mat_have_word_periods_and_measures(graph, tmp_path):
         assert (row["word"], row["periods"], row["norm"]) == ("LR", "3", "")
         assert float(row["double"]) == 2 * u
         assert row["triple"] == "" if p > 0.5 else float(row["triple"]) == 3 * u
-    data = loadmat(export(graph, "mat", tmp_path / "g.mat"), simplify_cells=True)["branches"]
+    data = written(graph, "mat")["branches"]
     assert (data["B2"]["word"], data["B2"]["periods"]) == ("LR", 3)
     x = np.linspace(0, 1, 31)
     assert np.array_equal(data["B2"]["measures"]["double"], 2 * x)
     assert np.isnan(data["B2"]["measures"]["triple"]).sum() == np.sum(x**2 > 0.5)
 
 
-def test_json_is_the_graphs_own_object_in_standard_json(graph, tmp_path):
+def test_json_is_the_graphs_own_object_in_standard_json(graph, written):
     graph.special["BP1"].bracket = (float("nan"), float("inf"))
-    text = export(graph, "json", tmp_path / "g.json").read_text()
-    assert "NaN" not in text and "Infinity" not in text
-    data = json.loads(text)
+    data = written(graph, "json")
     assert [b["label"] for b in data["branches"]] == ["B1", "B2", "B3"]
     assert data["special"][0]["value"] == {"p": 0.0}
     assert data["special"][0]["bracket"] == [None, None]
     assert data["switches"][0]["from"] == "B1"
 
 
-def test_graphml_is_read_back_by_networkx(graph, tmp_path):
-    network = networkx.read_graphml(export(graph, "graphml", tmp_path / "g.graphml"), force_multigraph=True)
+def test_graphml_is_read_back_by_networkx(graph, written):
+    network = written(graph, "graphml")
     assert set(network.nodes) == {"B1", "B2", "B3"}
-    assert {(a, b, d["point"]) for a, b, d in network.edges(data=True)} == {
-        ("B1", "B2", "BP1"),
-        ("B2", "B3", "VG1"),
-    }
+    edges = {(a, b, d["point"]) for a, b, d in network.edges(data=True)}
+    assert edges == {("B1", "B2", "BP1"), ("B2", "B3", "VG1")}
     assert json.loads(network.nodes["B2"]["range"]) == [0.0, 1.0]
 
 
-def test_mat_is_read_back_by_scipy(graph, tmp_path):
-    data = loadmat(export(graph, "mat", tmp_path / "g.mat"), simplify_cells=True)
+def test_mat_is_read_back_by_scipy(graph, written):
+    data = written(graph, "mat")
     for label, branch in graph.branches.items():
         assert np.array_equal(data["branches"][label]["values"], branch.values)
         assert np.array_equal(np.ravel(data["branches"][label]["multipliers"]), np.ravel(branch.multipliers))
@@ -104,13 +116,13 @@ def test_mat_is_read_back_by_scipy(graph, tmp_path):
     assert [link["point"] for link in np.atleast_1d(data["switches"])] == [s.point for s in graph.switches]
 
 
-def test_latex_has_a_row_per_branch_and_point(graph, tmp_path):
-    place = export(graph, "latex", tmp_path / "g.tex")
-    text = place.read_text()
+def test_latex_has_a_row_per_branch_and_point(graph, written, tmp_path):
+    text = written(graph, "latex")
     rows = [line.split(" & ")[0] for line in text.splitlines() if line.endswith(r"\\")]
     assert rows == ["branch", *graph.branches, "point", *graph.special]
     assert text.count(r"\begin{tabular}") == text.count(r"\end{tabular}") == 2
     assert "->" not in text and export(graph, None, tmp_path / "h.tex").exists()
+    assert written(graph, "latex") == text  # a file that ends as its format is called is written again
 
 
 def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
@@ -124,24 +136,14 @@ def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
         export(graph, "json", tmp_path)
 
 
-def test_exports_of_a_file_carry_its_study_and_with_what_it_was_made(tmp_path):
-    study = {
-        "atlas": {"seed": 7},
-        "source": {"command": "atlas", "study": "a.toml", "text": "[atlas]\nseed = 7\n"},
-    }
+def test_exports_of_a_file_carry_its_study_and_with_what_it_was_made(written, tmp_path):
+    source = {"command": "atlas", "study": "a.toml", "text": "[atlas]\nseed = 7\n"}
+    study = {"atlas": {"seed": 7}, "source": source}
     with Store.create(tmp_path / "g.vines", "one", study) as store:
         store.checkpoint(fakes.pitchfork_graph())
     graph = load(tmp_path / "g.vines", problems=False)
-    data = json.loads(export(graph, "json", tmp_path / "g.json").read_text())
+    data = written(graph, "json")
     assert data["study"] == study and data["made"]["core"]
-    assert (
-        loadmat(export(graph, "mat", tmp_path / "g.mat"), simplify_cells=True)["study"]["atlas"]["seed"] == 7
-    )
-    assert "\n% seed = 7\n" in export(graph, "latex", tmp_path / "g.tex").read_text()
-    network = networkx.read_graphml(export(graph, "graphml", tmp_path / "g.graphml"), force_multigraph=True)
-    assert json.loads(network.graph["study"]) == study
-
-
-def test_a_file_that_ends_as_its_format_is_called_is_written_again(graph, tmp_path):
-    for _ in range(2):
-        assert export(graph, "latex", tmp_path / "table.latex").exists()
+    assert written(graph, "mat")["study"]["atlas"]["seed"] == 7
+    assert "\n% seed = 7\n" in written(graph, "latex")
+    assert json.loads(written(graph, "graphml").graph["study"]) == study

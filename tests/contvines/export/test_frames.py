@@ -39,14 +39,10 @@ def test_a_graph_as_a_data_set_has_every_point_of_every_branch():
 
 
 def test_a_chart_as_a_frame_has_every_point_of_every_locus():
-    pytest.importorskip("pandas")
-    henon = cv.MapProblem(
-        lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]],
-        [0.63, 0.19],
-        {"a": 0.2, "b": 0.3},
-        parameter="a",
+    problem = cv.MapProblem(
+        lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]], [0.63, 0.19], {"a": 0.2, "b": 0.3}
     )
-    chart = cv.chart(cv.diagram(henon, within=(0.0, 0.6), depth=0), "b", (0.1, 0.5), regions=False)
+    chart = cv.chart(cv.diagram(problem, within=(0.0, 0.6), depth=0), "b", (0.1, 0.5), regions=False)
     frame = chart.to_pandas()
     flips = frame[frame["kind"] == "period-doubling"]
     assert len(flips) > 2 and np.allclose(flips["a"], 0.75 * (1 - flips["b"]) ** 2, atol=1e-9)
@@ -55,11 +51,8 @@ def test_a_chart_as_a_frame_has_every_point_of_every_locus():
     data = chart.to_xarray()
     assert data.sizes == {"row": len(frame)} and list(data.attrs["parameters"]) == ["a", "b"]
     assert data["locus"].values.tolist() == frame.index.get_level_values("locus").tolist()
-    assert (
-        np.array_equal(data["a"], frame["a"])
-        and data["a"].attrs["units"] == "mm"
-        and "units" not in data["b"].attrs
-    )
+    assert np.array_equal(data["a"], frame["a"])
+    assert data["a"].attrs["units"] == "mm" and "units" not in data["b"].attrs
 
 
 def test_special_points_as_a_frame(graph):

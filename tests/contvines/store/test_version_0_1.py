@@ -8,10 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import contvines as cv
-from contvines.command.cli import app
 from contvines.graph.persistence import graph_entries
 from contvines.store import Store, StoreError
 
@@ -52,22 +50,15 @@ def test_borders_lead_on(file):
 
 @pytest.mark.parametrize(
     "words",
-    [
-        ["show"],
-        ["show", "--json"],
-        ["orbit", "VG1"],
-        ["plot", "-o", "old.png"],
-        ["export", "--to", "csv", "-o", "old.csv"],
-        ["switch", "SB1"],
-    ],
+    ["show", "show --json", "orbit VG1", "plot -o old.png", "export --to csv -o old.csv", "switch SB1"],
 )
-def test_commands(file, words, monkeypatch):
-    monkeypatch.chdir(file.parent)
-    done = CliRunner().invoke(app, [words[0], file.name, *words[1:]])
-    assert done.exit_code == 0, done.output
+def test_commands(file, run, words):
+    verb, *more = words.split()
+    status, _, err = run(verb, file, *more)
+    assert status == 0, err
 
 
-def test_equations_that_have_changed_since_are_named(file):
+def test_equations_that_have_changed_since_are_named(file, run):
     """Unknowns of another number, as motions without events had, are those of an older version: its table still opens."""
     (_, _, content), *_ = [e for e in graph_entries(cv.load(file)) if e[:2] == ("branch", "B1")]
     fewer = {name: content[name][:, :-1] for name in ("points", "tangents")}
@@ -75,4 +66,4 @@ def test_equations_that_have_changed_since_are_named(file):
         store.put("branch", "B1", {**content, **fewer})
     with pytest.raises(StoreError, match=r"an older version .* \(B1: its points have 1 .* 2 now\).*--fresh"):
         cv.load(file)
-    assert "B1" in CliRunner().invoke(app, ["show", str(file)]).output
+    assert "B1" in run("show", file)[1]

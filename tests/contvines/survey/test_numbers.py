@@ -10,18 +10,27 @@ from contvines.graph.stretches import highest, inside, stretches
 from contvines.survey import outcomes
 
 
-def branch(word, values, heights, real=True):
-    values, heights = np.array(values, dtype=float), np.array(heights, dtype=float)
-    return SimpleNamespace(
-        real=real, problem=None, values=values, description={"word": word, "impacts": word.count("L")},
-        measure=lambda name: heights, measure_names=("norm",), default_measure="", pieces=lambda: [(0, len(values) - 1, True)],
-        stable_intervals=lambda: [(values.min(), values.max())], __len__=lambda: len(values),
-    )  # fmt: skip
+class Made(SimpleNamespace):
+    """A branch whose stable motions have these heights."""
 
+    problem, measure_names, default_measure = None, ("norm",), ""
 
-class Found(SimpleNamespace):
     def __len__(self):
         return len(self.values)
+
+    def measure(self, name):
+        return self.heights
+
+    def pieces(self):
+        return [(0, len(self) - 1, True)]
+
+    def stable_intervals(self):
+        return [(self.values.min(), self.values.max())]
+
+
+def branch(word, values, heights, real=True):
+    description = {"word": word, "impacts": word.count("L")}
+    return Made(values=values, heights=heights + 0.0 * values, description=description, real=real)
 
 
 @pytest.fixture
@@ -32,27 +41,20 @@ def found(monkeypatch):
     parts = [
         branch("tt", p[:61], 1.0 + p[:61]),
         branch("LR", p[40:], 3.0 - p[40:]),
-        branch("LR", p, 9.0 + 0.0 * p, real=False),
-        branch("LRs", p[70:81], 0.1 + 0.0 * p[70:81]),
-        branch("LRs", p[75:91], 0.1 + 0.0 * p[75:91]),
+        branch("LR", p, 9.0, real=False),
+        branch("LRs", p[70:81], 0.1),
+        branch("LRs", p[75:91], 0.1),
     ]
-    points = [
-        SimpleNamespace(kind="fold", value=0.2, real=False),
-        SimpleNamespace(kind="fold", value=0.7, real=True),
-    ]
-    graph = SimpleNamespace(
-        within=(0.0, 1.0), branches={f"B{i}": Found(**vars(b)) for i, b in enumerate(parts)},
-        of_kind=lambda kind: [q for q in points if q.kind == kind],
-    )  # fmt: skip
+    folds = [SimpleNamespace(value=0.2, real=False), SimpleNamespace(value=0.7, real=True)]
+    branches = {f"B{i}": part for i, part in enumerate(parts)}
+    graph = SimpleNamespace(within=(0.0, 1.0), branches=branches, of_kind={"fold": folds}.get)
     return outcomes.Findings(graph, None)
 
 
 def test_peaks(found):
     assert outcomes.peak(found) == pytest.approx({"peak": 2.6, "peak_at": 0.4})
     lower = outcomes.lower_peak(found)  # tt up to 0.6, then LR until LRs is lower still
-    assert lower["lower_peak"] == pytest.approx(2.4, abs=0.01) and lower["lower_peak_at"] == pytest.approx(
-        0.6, abs=0.01
-    )
+    assert lower == pytest.approx({"lower_peak": 2.4, "lower_peak_at": 0.6}, abs=0.01)
 
 
 def test_a_largest_response_at_the_end_is_looked_at_from_inside():
@@ -76,25 +78,16 @@ def test_ranges(found):
 
 
 def test_activation_is_no_end_of_the_interval(found):
-    known = outcomes.activation(found)
-    assert known["activation_from_below"] == pytest.approx(0.6) and known[
-        "activation_from_above"
-    ] == pytest.approx(0.4)
-    for contradiction in [
-        (0.7, 0.0),
-        (0.3, 2.0),
-    ]:  # a motion without impacts above both, one with impacts below both
-        value, impacts = contradiction
-        simulated = outcomes.Findings(found.graph, None, [(value, {"impacts_per_period": impacts}, "")])
-        wrong = outcomes.activation(simulated)
-        assert np.isnan(wrong["activation_from_below"]) == (impacts == 0.0)
-        assert np.isnan(wrong["activation_from_above"]) == (impacts > 0.0)
-    found.graph.branches["B0"].values = np.linspace(0.0, 1.0, 61)
-    found.graph.branches["B1"].values = np.linspace(0.0, 1.0, 61)
-    ends = outcomes.activation(found)
-    assert np.isnan(ends["activation_from_below"]) and np.isnan(ends["activation_from_above"])
+    def ends(*simulated):
+        return [*outcomes.activation(outcomes.Findings(found.graph, None, simulated)).values()]
 
-
-def test_activation_is_not_told_where_the_diagram_has_no_motion_without_impacts(found):
-    del found.graph.branches["B0"]
-    assert all(np.isnan(value) for value in outcomes.activation(found).values())
+    below, above = 0.6, 0.4
+    assert ends() == pytest.approx([below, above])
+    # a motion without impacts above both, one with impacts below both
+    assert ends((0.7, {"impacts_per_period": 0.0}, "")) == pytest.approx([np.nan, above], nan_ok=True)
+    assert ends((0.3, {"impacts_per_period": 2.0}, "")) == pytest.approx([below, np.nan], nan_ok=True)
+    for name in ("B0", "B1"):
+        found.graph.branches[name].values = np.linspace(0.0, 1.0, 61)
+    assert np.isnan(ends()).all()
+    del found.graph.branches["B0"]  # no motion without impacts
+    assert np.isnan(ends()).all()

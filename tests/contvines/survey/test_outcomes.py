@@ -15,27 +15,21 @@ from contvines.survey.outcomes import (
     stable_range,
 )
 from orbits import Coupled
+from orbits.design import Family
 
 pytestmark = pytest.mark.slow
 
 
+MACHINE = Coupled(
+    restitution=0.6, friction=0.1, gravity=0.26, mass_ratio=0.02, damping=1.5, frequency=1.003, forcing=1.0
+)
+
+
 @pytest.fixture(scope="module")
 def found():
-    machine = Coupled(
-        restitution=0.6,
-        friction=0.1,
-        gravity=0.26,
-        mass_ratio=0.02,
-        damping=1.5,
-        forcing=1.0,
-        frequency=1.003,
-    )
-    seed = machine.orbit("LR", forcing=1.2)
-    return Findings(
-        cv.diagram(seed, over="forcing", within=(0.05, 2.0), depth=2),
-        seed,
-        [(1.0, {}, "LR"), (1.0, {}, "tt")],
-    )
+    seed = MACHINE.orbit("LR", forcing=1.2)
+    graph = cv.diagram(seed, over="forcing", within=(0.05, 2.0), depth=2)
+    return Findings(graph, seed, [(1.0, {}, "LR"), (1.0, {}, "tt")])
 
 
 def test_activation_is_at_special_points(found):
@@ -77,25 +71,14 @@ def test_coexisting_responses_are_counted(found):
 
 
 def test_an_atlas_of_each_machine_is_the_atlas_of_that_machine():
-    from orbits.design import Family
-
-    machine = Coupled(
-        restitution=0.6,
-        friction=0.1,
-        gravity=0.26,
-        mass_ratio=0.02,
-        damping=1.5,
-        frequency=1.003,
-        forcing=1.0,
-    )
     asked = {"values": [1.0, 1.6], "starts": 12, "seed": 3, "scan": 0}
     made = survey(
-        Family(machine, "LR", loose={"forcing": 1.2}), {"friction": [0.1, 0.12]}, over="forcing", within=(0.8, 2.0),
+        Family(MACHINE, "LR", loose={"forcing": 1.2}), {"friction": [0.1, 0.12]}, over="forcing", within=(0.8, 2.0),
         outcomes=("share:LR", "coexisting"), atlas=asked, workers=1, depth=1,
     )  # fmt: skip
     assert made.failed == 0
     for i, friction in enumerate((0.1, 0.12)):
         graph = cv.atlas(
-            machine.changed(friction=friction), over="forcing", within=(0.8, 2.0), depth=1, **asked
+            MACHINE.changed(friction=friction), over="forcing", within=(0.8, 2.0), depth=1, **asked
         )
         assert made["share_LR"][i] == sum(a.share for a in graph.attractors if a.word == "LR") / 2
