@@ -1,4 +1,4 @@
-"""Newton's corrections one by one: when they are taken, when they are enough, when there is no hope."""
+"""How far ahead the loop sees."""
 
 import itertools
 import math
@@ -6,28 +6,10 @@ import math
 import numpy as np
 import pytest
 
-import contvines as cv
 from contvines.continuation.corrector import Metric, extrapolate
-from contvines.continuation.engine import Engine
-from contvines.continuation.settings import Settings
 
 ONES = np.ones(2)
 FLAT = Metric(ONES, ONES, 1.0, 1.0)
-
-
-def test_a_solution_that_newton_misses_is_none_and_costs_little():
-    calls = []
-
-    def F(u, p):
-        calls.append(float(np.real(u[0])))
-        return np.arctan(u) - p
-
-    problem = cv.AlgebraicProblem(F, [0.0], 0.0, scale=1.0)
-    engine = Engine(problem, (-1.0, 1.0), Settings())
-    calls.clear()
-    assert engine.at_value(np.array([3.0]), 0.0) is None
-    assert len(calls) < 60
-    assert engine.at_value(np.array([1.0]), 0.0).u[0] == pytest.approx(0.0, abs=1e-12)
 
 
 def circle(angles):

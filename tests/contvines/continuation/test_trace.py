@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import islice
-
 import numpy as np
 
 import contvines as cv
@@ -19,9 +17,3 @@ def test_trace_from_an_orbit():
     u, p = orbit.seed(problem)
     again = list(cv.trace(problem, (0.5, 0.7), u, p))
     np.testing.assert_array_equal([a.u for a in again], [b.u for b in points])
-
-
-def test_trace_of_a_problem_keeps_its_start():
-    circle = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
-    values = [point.value for point in islice(cv.trace(circle, (-2.0, 2.0)), 5)]
-    assert values[0] == 0.0 and np.all(np.diff(values) > 0.0)

@@ -20,33 +20,27 @@ def arguments(largest):
     return np.concatenate([near, drawn, small, -small, [0.0, -0.0]])
 
 
-def sines_cosines(variant, x):
-    found = np.empty((2, len(x)))
-    ctypes.CDLL(str(path_of(variant))).core_sines_cosines(
-        ctypes.c_int64(len(x)),
-        x.ctypes.data_as(ctypes.c_void_p),
-        found[0].ctypes.data_as(ctypes.c_void_p),
-        found[1].ctypes.data_as(ctypes.c_void_p),
-    )
+def core(name, variant, x, rows):
+    """What a function of the core writes for these arguments."""
+    found = np.empty((rows, len(x)))
+    places = [array.ctypes.data_as(ctypes.c_void_p) for array in (x, *found)]
+    getattr(ctypes.CDLL(str(path_of(variant))), name)(ctypes.c_int64(len(x)), *places)
     return found
+
+
+def sines_cosines(variant, x):
+    return core("core_sines_cosines", variant, x, 2)
 
 
 def exponentials(variant, x):
-    found = np.empty(len(x))
-    ctypes.CDLL(str(path_of(variant))).core_exponentials(
-        ctypes.c_int64(len(x)), x.ctypes.data_as(ctypes.c_void_p), found.ctypes.data_as(ctypes.c_void_p)
-    )
-    return found
+    return core("core_exponentials", variant, x, 1)[0]
 
 
 def in_last_places(found, function, x):
     """Largest distance from the true value in units of the last place."""
     with mpmath.workdps(50):
-        true = [function(mpmath.mpf(float(value))) for value in x]
-        return max(
-            float(abs(mpmath.mpf(float(a)) - b) / float(np.spacing(abs(float(b)))))
-            for a, b in zip(found, true)
-        )
+        away = [abs(mpmath.mpf(a) - function(mpmath.mpf(b))) for a, b in zip(found.tolist(), x.tolist())]
+    return (np.array(away, dtype=float) / np.spacing(np.abs(found))).max()
 
 
 @pytest.mark.parametrize("largest", [1.0, 50.0, 1e6])

@@ -58,13 +58,17 @@ def is_forced(f):
     return f.__code__.co_argcount > 2
 
 
+def jacobian(f, x, *of):
+    """Derivatives of f (x, ...) by the state, by complex steps."""
+    return np.transpose([np.imag(f(x + 1e-30j * unit, *of)) * 1e30 for unit in np.eye(len(x))])
+
+
 def after(f, x, time, /, **values):
-    """State and its derivatives by the first one after some time; derivatives of f by complex steps."""
+    """State and its derivatives by the first one after some time."""
     d = len(x)
 
     def rate(y, *p):
-        slopes = [np.imag(f(y[:d] + 1e-30j * unit, *p)) * 1e30 for unit in np.eye(d)]
-        return np.concatenate([f(y[:d], *p), (np.transpose(slopes) @ y[d:].reshape(d, d)).ravel()])
+        return np.concatenate([f(y[:d], *p), (jacobian(f, y[:d], *p) @ y[d:].reshape(d, d)).ravel()])
 
     end = run(rate, [*x, *np.eye(d).ravel()], time, 1e-12, is_forced(f), **values)
     return end[:d], end[d:].reshape(d, d)

@@ -6,26 +6,23 @@ Langford's system without the term that breaks its symmetry: r' = (z - lambda) r
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq, root
+from scipy.optimize import brentq
 
 import contvines as cv
+from tests.contvines.flows.shooting import cycle
 
 A, RHO, W = 0.6, 0.25, 3.5
 
 
+def planar(x, p):
+    """z and r."""
+    z, r = x
+    return [A + z - z**3 / 3 - r * r * (1 + RHO * z), (z - p.q) * r]
+
+
 def langford(x, p):
-    square = x[0] ** 2 + x[1] ** 2
-    return [
-        (x[2] - p.q) * x[0] - W * x[1],
-        W * x[0] + (x[2] - p.q) * x[1],
-        A + x[2] - x[2] ** 3 / 3 - square * (1 + RHO * x[2]),
-    ]
-
-
-def planar(t, y, q):
-    r, z = y
-    return [(z - q) * r, A + z - z**3 / 3 - r * r * (1 + RHO * z)]
+    height, growth = planar([x[2], np.sqrt(x[0] ** 2 + x[1] ** 2)], p)[0], x[2] - p.q
+    return [growth * x[0] - W * x[1], W * x[0] + growth * x[1], height]
 
 
 def radius(z):
@@ -34,19 +31,6 @@ def radius(z):
 
 def birth():
     return brentq(lambda z: 1 - z * z - RHO * radius(z) ** 2, 0.3, 1.0)
-
-
-def planar_period(q, guess, size):
-    """By shooting from the largest or smallest r, where z = q; the equilibrium is divided out."""
-
-    def gap(unknown):
-        period, away = unknown
-        end = solve_ivp(
-            planar, (0.0, period), [radius(q) + away, q], args=(q,), method="DOP853", rtol=1e-12, atol=1e-14
-        )
-        return (end.y[:, -1] - [radius(q) + away, q]) / away
-
-    return root(gap, [guess, size], tol=1e-13).x[0]
 
 
 @pytest.mark.slow
@@ -60,7 +44,8 @@ def test_a_torus_of_langfords_system():
     assert last.value < point.value and last.stable and last.replay < 1e-7
     turns = last.rotation % 1.0
     turns = min(turns, 1.0 - turns)
-    period = planar_period(last.value, (2 * np.pi / W) / turns, last.radius)
+    start = [last.value, radius(last.value) + last.radius]
+    period, _ = cycle(planar, start, (2 * np.pi / W) / turns, q=last.value)
     assert (2 * np.pi / W) / period == pytest.approx(turns, abs=1e-8)
     # close to its birth the torus has the size that the normal form says
     assert found.circles[0].radius == pytest.approx(found.circles[0].predicted, rel=1e-3)

@@ -4,14 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.optimize import root_scalar
 
 import contvines as cv
 from contvines.flows import mesh
-from contvines.flows.mesh import rule
 from contvines.graph.persistence import same_graph
-from tests.contvines.flows.shooting import nerve, neuron, van_der_pol
+from tests.contvines.flows.shooting import cycle, nerve, neuron, van_der_pol
 
 
 def flow():
@@ -32,18 +29,6 @@ def told():
             numbers.append(int(words[words.index("B2:") + 1]))
 
     return cv.diagram(flow(), progress=listen, **WHOLE), numbers
-
-
-@pytest.mark.parametrize("degree", [2, 4, 7])
-def test_a_halved_mesh_has_the_same_curves(degree):
-    r, rng = rule(degree), np.random.default_rng(degree)
-    x, widths = rng.standard_normal((3, 6, degree, 2)), rng.uniform(0.5, 1.5, 6)
-    places = rng.random(200)
-    finer = mesh.halved(r, x)
-    for one, other in zip(x, finer):
-        before = mesh.evaluate(r, widths, one, places)
-        assert np.allclose(mesh.evaluate(r, np.repeat(0.5 * widths, 2), other, places), before, atol=1e-12)
-        assert np.array_equal(mesh.halved(r, one), other)
 
 
 def test_cycles_on_a_mesh_that_becomes_too_coarse_are_not_followed_again(told):
@@ -131,54 +116,21 @@ def test_a_branch_that_comes_to_a_cycle_of_half_the_period_ends_there():
     assert branch.orbit(len(branch) - 1).period == pytest.approx(2 * 28.973487936, abs=1e-5)
 
 
-@pytest.mark.slow
-def test_an_oregonator_of_two_variables_from_one_hopf_point_to_the_other():
-    """Beside the second Hopf point the parameter is that of the square of an amplitude, times 2.5e4: the last steps are shorter than 1e-6."""
-    q, eps = 8e-4, 0.1
+def test_cycles_near_rounding_have_the_periods_of_shooting_in_logarithms():
+    """Rosenzweig's and MacArthur's prey falls to 1e-14 of its largest number."""
 
     def rates(x, p):
-        return [(x[0] * (1 - x[0]) - p.f * x[1] * (x[0] - q) / (x[0] + q)) / eps, x[0] - x[1]]
-
-    def rest(f):
-        return root_scalar(lambda x: x * (1 - x) - f * x * (x - q) / (x + q), bracket=(1e-5, 1.0)).root
-
-    def trace(f):
-        x = rest(f)
-        return (1 - 2 * x - f * x * 2 * q / (x + q) ** 2) / eps - 1
-
-    flow = cv.FlowProblem(rates, [0.5, 0.5], {"f": 0.3})
-    graph = cv.diagram(flow, over="f", within=(0.3, 3.0))
-    hopf = [root_scalar(trace, bracket=between).root for between in ((0.4, 0.7), (2.1, 2.4))]
-    assert [point.value for point in graph.of_kind("hopf")] == pytest.approx(hopf, abs=1e-9)
-    cycles = graph.branches["B2"]
-    assert [ending.point for ending in cycles.endings] == ["HB1", "HB2"]
-    labels = [label for _, label in cycles.marks]
-    assert len(labels) == len(set(labels)) and not graph.of_kind("branch-point")
-    assert not graph.of_kind("period-doubling")  # in the plane
-
-
-def test_cycles_near_rounding_have_the_periods_of_a_simulation_in_logarithms():
-    """Rosenzweig's and MacArthur's prey falls to 1e-14 of its largest number; DOP853 follows the logarithms."""
-
-    def slow(t, y, k):
-        x, z = np.exp(y)
-        return [1 - x / k - z / (0.3 + x), 0.8 * x / (0.3 + x) - 0.3]
-
-    def passes(t, y, k):
-        return y[1] - np.log(0.5)
-
-    flow = cv.FlowProblem(
-        lambda x, p: [
+        return [
             x[0] * (1 - x[0] / p.k) - x[0] * x[1] / (0.3 + x[0]),
             0.8 * x[0] * x[1] / (0.3 + x[0]) - 0.3 * x[1],
-        ],
-        [0.2, 0.0],
-        {"k": 0.1},
-    )
-    graph = cv.diagram(flow, over="k", within=(0.1, 10.0))
+        ]
+
+    def in_logarithms(y, p):
+        return [rate / number for rate, number in zip(rates(np.exp(y), p), np.exp(y))]
+
+    graph = cv.diagram(cv.FlowProblem(rates, [0.2, 0.0], {"k": 0.1}), over="k", within=(0.1, 10.0))
     cycles = next(b for b in graph if b.description["word"] == "cycle")
-    periods = cycles.measure("period")
     for i in (len(cycles) // 2, len(cycles) - 8):
-        tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-12, "events": passes}
-        found = solve_ivp(slow, (0, 1200), np.log([0.2, 0.4]), args=(cycles.values[i],), **tight)
-        assert periods[i] == pytest.approx(np.diff(found.t_events[0][::2])[-1], rel=1e-3)
+        orbit = cycles.orbit(i)
+        period, _ = cycle(in_logarithms, np.log(orbit.states[0]), orbit.period, k=cycles.values[i])
+        assert orbit.period == pytest.approx(period, rel=1e-5)

@@ -36,25 +36,6 @@ def test_a_loop_of_one_saddle_is_homoclinic_and_a_loop_of_two_heteroclinic():
     assert "heteroclinic cycle of the saddle at" in end.note and "(-1, 0)" in end.note
 
 
-def test_a_heteroclinic_cycle_of_a_predator_and_a_prey_with_an_allee_effect():
-    """Two saddles on the axis of the prey, its threshold and its capacity (van Voorn and others, Math. Biosci. 209 (2007) 451)."""
-
-    def rates(x, p):
-        eaten = x[0] ** 2 / (x[0] ** 2 + 0.25)
-        return [x[0] * (1 - x[0]) * (x[0] - 0.1) - x[1] * eaten, x[1] * (eaten - p.d)]
-
-    prey = 0.5 * np.sqrt(0.45 / 0.55)
-    start = [prey, (1 - prey) * (prey - 0.1) * prey / 0.45]
-    flow = cv.FlowProblem(rates, start, {"d": 0.45})
-    end, limit = limit_of(cv.diagram(flow, over="d", within=(0.2, 0.7), progress=False))
-    assert limit.limit is Limit.HETEROCLINIC
-    places = sorted(saddle.place.tolist() for saddle in limit.saddles)
-    assert np.allclose(places, [[0.1, 0.0], [1.0, 0.0]], atol=1e-6)
-    assert sum(saddle.share for saddle in limit.saddles) == pytest.approx(1.0, abs=1e-3)
-    # beside the threshold it stays longer: motions leave it at the rate 0.09, the capacity at 0.46
-    assert end.note.startswith("heteroclinic cycle of the saddle at (0.1, 0) with eigenvalues -0.3006, 0.09 ")
-
-
 def test_two_coupled_oscillators_whose_common_rotation_stands_still():
     """z1' = (1 + 0.4 i - |z1|^2) z1 + k (z2 - z1), z2' = (0.5 - 0.5 i - |z2|^2) z2 + k (z1 - z2): the locked rotation is 0.4 |z1|^2 = 0.5 |z2|^2 at rest,
 

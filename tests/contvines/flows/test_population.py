@@ -49,15 +49,6 @@ def test_each_start_reaches_what_its_radius_says(flow):
     assert not mirrored.any()
 
 
-def test_mirror_images_are_told_apart():
-    flow = cv.FlowProblem(
-        lambda x, p: [x[1], x[0] - x[0] ** 3 - p.c * x[1]], [1.0, 0.0], {"c": 0.5}, mirror=lambda x: -x
-    )
-    motions, index, mirrored = flow.population().settle(np.array([[1.1, 0.0], [-0.9, 0.0], [0.8, 0.1]]), 0.5)
-    assert [m.word for m in motions] == ["equilibrium"] and not index.any()
-    assert mirrored.tolist() == [False, True, False]
-
-
 def test_what_escapes_and_what_does_not_recur():
     lorenz = cv.FlowProblem(
         lambda x, p: [10 * (x[1] - x[0]), p.r * x[0] - x[1] - x[0] * x[2], x[0] * x[1] - 8 / 3 * x[2]],
@@ -81,29 +72,6 @@ def test_two_rates_that_share_no_period_make_a_torus():
     flow = cv.FlowProblem(rings, [0.5, 0.1, 0.5, 0.1], {"mu": 1.0})
     motions, _, _ = flow.population().settle(np.array([[0.6, 0.1, 0.9, 0.3], [0.2, 0.9, -0.4, 0.3]]), 1.0)
     assert [(m.kind, round(m.exponent, 2)) for m in motions] == [("quasi-periodic", 0.0)]
-
-
-def test_an_atlas_has_what_no_branch_of_the_diagram_reaches():
-    """Beside the equilibrium, which has no Hopf point here, a cycle lives up to a fold, where m (1 - m) is at most 0.06."""
-
-    def f(x, p):
-        square = x[0] ** 2 + x[1] ** 2
-        growth = 0.06 - p.m * (1.0 - p.m) - (square - 1.0) ** 2
-        return [growth * x[0] - x[1], x[0] + growth * x[1]]
-
-    flow = cv.FlowProblem(f, [0.1, 0.0], {"m": 0.1})
-    graph = cv.atlas(
-        flow.population("m", box=[(-1.5, 1.5), (-1.5, 1.5)]),
-        over="m",
-        within=(0.0, 0.2),
-        values=3,
-        starts=8,
-        scan=0,
-    )
-    folds = graph.of_kind("fold")
-    assert [p.value for p in folds] == pytest.approx([(1.0 - np.sqrt(0.76)) / 2.0], abs=1e-8)
-    assert {a.word for a in graph.attractors} == {"equilibrium", "cycle"}
-    assert all(a.branch for a in graph.attractors)
 
 
 def test_basins_of_a_forced_flow():

@@ -61,20 +61,6 @@ def test_isola(radius, centre, stretch):
     assert not of_kind(graph, "end")
 
 
-@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-7])
-def test_two_eigenvalues_cross_close_together(gap):
-    """Between two points of the branch, at 0 and at ``gap``: a product of tests would not change sign."""
-
-    def two(u, p):
-        return np.array([p * u[0] - u[0] ** 3, (p - gap) * u[1] - 2.0 * u[1] ** 3])
-
-    graph = cv.diagram(
-        cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=0
-    )
-    found = of_kind(graph, "branch-point")
-    assert len(found) == 2 and found == pytest.approx([0.0, gap], abs=1e-13)
-
-
 def test_user_functions_are_events():
     problem = cv.AlgebraicProblem(lambda x, p: x - p**2, [0.0], 0.0)
     graph = cv.diagram(
@@ -103,12 +89,3 @@ def test_derivatives_given_or_not():
         graph = cv.diagram(problem, within=(-1.5, 1.5))
         accuracy = 1e-13 if F is smooth else 1e-12
         assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=accuracy)
-
-
-def test_lemniscate_crosses_itself():
-    """(x^2 + p^2)^2 = p^2 - x^2: closed, folds at p = +-1, and a node at 0 that the branch passes twice."""
-    problem = cv.AlgebraicProblem(lambda x, p: (x * x + p * p) ** 2 - p * p + x * x, [0.0], 1.0)
-    graph = cv.diagram(problem, within=(-1.5, 1.5))
-    assert of_kind(graph, "fold") == pytest.approx([-1.0, 1.0], abs=1e-12)
-    assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-12)
-    assert len(graph) == 1 and graph["B1"].closed

@@ -65,34 +65,35 @@ def test_a_parameter_may_break_it():
             cv.diagram(other, within=(-1.0, 1.0))
 
 
-@pytest.mark.parametrize("mirror", [np.diag([1.0, 0.0]), lambda u: np.array([u[0], 0.0])])
-def test_a_projection_is_no_mirror_though_it_commutes_with_the_equations(mirror):
-    """R R = R has no inverse: solutions and their images are not equivalent."""
-
-    def apart(u, p):
-        return np.array([p * u[0] - u[0] ** 3, -u[1]])
-
-    again = "applied twice a mirror must lead back to u"
-    with pytest.raises(ValueError, match=again):
-        cv.FlowProblem(lambda x, p: apart(x, p.m), [0.0, 0.0], {"m": -0.5}, mirror=mirror)
-    with pytest.raises(ValueError, match=again):
-        cv.MapProblem(apart, [0.0, 0.0], 0.5, mirror=mirror)
-    for images in ({"mirror": mirror}, {"symmetries": [mirror]}):
-        with pytest.raises(ValueError, match="does not lead back to u however often it is applied"):
-            cv.AlgebraicProblem(apart, [0.0, 0.0], -0.5, **images)
+TURN = np.array([[-0.5, -np.sqrt(0.75)], [np.sqrt(0.75), -0.5]])
 
 
-def test_a_third_of_a_turn_generates_a_group_and_is_no_mirror():
+def apart(u, p):
+    return np.array([p * u[0] - u[0] ** 3, -u[1]])
+
+
+def three(u, p):
     """z' = p z + z*^2 - z |z|^2 is the same after a third of a turn (Golubitsky, Stewart and Schaeffer 1988)."""
-    turn = np.array([[-0.5, -np.sqrt(0.75)], [np.sqrt(0.75), -0.5]])
+    x, y = u
+    own = p - x * x - y * y
+    return np.array([own * x + x * x - y * y, own * y - 2.0 * x * y])
 
-    def three(u, p):
-        square = u[0] ** 2 + u[1] ** 2
-        return np.array(
-            [(p - square) * u[0] + u[0] ** 2 - u[1] ** 2, (p - square) * u[1] - 2.0 * u[0] * u[1]]
-        )
 
-    start = [0.0, 0.0]
-    cv.AlgebraicProblem(three, start, -0.5, symmetries=[turn])
-    with pytest.raises(ValueError, match="applied twice a mirror must lead back to u"):
-        cv.FlowProblem(three, start, -0.5, mirror=turn)
+@pytest.mark.parametrize(
+    ("F", "mirror"),
+    [(apart, np.diag([1.0, 0.0])), (apart, lambda u: np.array([u[0], 0.0])), (three, TURN)],
+    ids=["a projection", "a projection as a function", "a third of a turn"],
+)
+def test_what_is_no_mirror_though_it_commutes_with_the_equations(F, mirror):
+    """Of a projection, R R = R, solutions and their images are not equivalent; a third of a turn generates a group."""
+    start, again = [0.0, 0.0], "applied twice a mirror must lead back to u"
+    with pytest.raises(ValueError, match=again):
+        cv.FlowProblem(lambda x, p: F(x, p.m), start, {"m": -0.5}, mirror=mirror)
+    with pytest.raises(ValueError, match=again):
+        cv.MapProblem(F, start, 0.5, mirror=mirror)
+    for images in ({"mirror": mirror}, {"symmetries": [mirror]}):
+        if F is three:
+            cv.AlgebraicProblem(F, start, -0.5, **images)
+            continue
+        with pytest.raises(ValueError, match="does not lead back to u however often it is applied"):
+            cv.AlgebraicProblem(F, start, -0.5, **images)

@@ -8,6 +8,8 @@ import orbits
 from contvines.loci.problem import LocusProblem
 from contvines.problems.protocol import MEMBERS, Problem
 from orbits.problem import OrbitProblem
+from tests.machines import ABSORBER
+from tools.pages.pages import page
 
 
 def checked_by_pyright(
@@ -17,30 +19,16 @@ def checked_by_pyright(
     return [a, b, c, d, e]
 
 
-def oscillator(state, phase, p, contact):
-    x, v = state
-    return v, p.forcing * orbits.symbols.cos(phase) - 0.1 * v - x
-
-
 def problems():
     circle = cv.AlgebraicProblem(lambda u, p: u**2 + p.a**2 - p.r, [1.0], {"a": 0.0, "r": 1.0})
-    model = orbits.Absorber(restitution=0.9, friction=0.1, gravity=0.1)
-    params = model.vector({"amplitude": 0.01})
-    page = orbits.Machine(
-        name="oscillator",
-        states=("x", "v"),
-        parameters={"forcing": 1.0, "frequency": 1.2, "gap": 9.0, "restitution": 0.9},
-        phase_rate="frequency",
-        motion=oscillator,
-        contacts=[orbits.Wall("R", lambda state, phase, p: p.gap - state.x, {"v": -1.0}, "restitution")],
-    )
+    params = ABSORBER.vector({"amplitude": 0.01})
     return [
         circle,
         LocusProblem(circle, "fold", "r"),
         cv.MapProblem(lambda x, p: p * x * (1.0 - x), [0.5], 2.0),
-        OrbitProblem(model, orbits.Word((), ()), 1, "amplitude", params),
-        OrbitProblem(model, orbits.Word.parse("LR"), 1, "amplitude", params),
-        page.orbit("").problem("frequency"),
+        OrbitProblem(ABSORBER, orbits.Word((), ()), 1, "amplitude", params),
+        OrbitProblem(ABSORBER, orbits.Word.parse("LR"), 1, "amplitude", params),
+        page("impact_oscillator").orbit("", frequency=2.0).problem("frequency"),
     ]
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import contvines as cv
 from tools.demos import equilibria as eq
-from tools.demos import listed, maps
+from tools.demos import listed
 from tools.demos.demo import NUMBERS
 
 CASES = [demo for demo in listed.DEMOS if demo.name in ("bazykin", "pp2", "ab", "oxidation of CO", "cusp")]
@@ -54,16 +54,6 @@ def test_eigenvalues_and_coefficients_in_other_units():
     assert large.value == pytest.approx(one.value, rel=1e-12)
     assert large.frequency == pytest.approx(one.frequency, rel=1e-9)
     assert large.coefficient * 1e14 == pytest.approx(one.coefficient, rel=1e-5)
-
-
-@pytest.mark.parametrize(("unit", "value"), [(1e-9, 1e9), (1e9, 1e-9)])
-def test_cycles_of_maps(unit, value):
-    problem = cv.MapProblem(
-        lambda x, r: unit * np.array(maps.logistic(x / unit, r / value, NUMBERS)), [0.5 * unit], 2.5 * value
-    )
-    graph = cv.diagram(problem, within=(2.0 * value, 3.5 * value), depth=2)
-    flips = [s.value / value for s in graph.of_kind("period-doubling")]
-    assert flips == pytest.approx([3.0, 1.0 + np.sqrt(6.0)], rel=1e-12)
 
 
 def test_where_nothing_can_tell_a_sentence_says_so():

@@ -47,7 +47,7 @@ def found(monkeypatch):
     ]
     folds = [SimpleNamespace(value=0.2, real=False), SimpleNamespace(value=0.7, real=True)]
     branches = {f"B{i}": part for i, part in enumerate(parts)}
-    graph = SimpleNamespace(within=(0.0, 1.0), branches=branches, of_kind={"fold": folds}.get)
+    graph = SimpleNamespace(within=(0.0, 1.0), branches=branches, attractors=(), of_kind={"fold": folds}.get)
     return outcomes.Findings(graph, None)
 
 
@@ -75,6 +75,13 @@ def test_ranges(found):
         {"stable_LRs": 0.2, "stable_LRs_from": 0.7, "stable_LRs_to": 0.9}
     )
     assert outcomes.first_point(found, "fold") == {"first_fold": 0.7}
+    # two from 0.4 to 0.6 and from 0.7 to 0.9, three where both of `LRs` overlap
+    assert outcomes.coexisting(found) == pytest.approx({"coexisting": 3, "ambiguous": 0.4}, abs=0.01)
+    assert np.isnan(outcomes.share(found, "LR")["share_LR"])
+    simulated = [(1.0, {}, "LR"), (1.0, {}, "tt")]
+    assert outcomes.share(outcomes.Findings(found.graph, None, simulated), "LR") == {"share_LR": 0.5}
+    del found.graph.branches["B0"]
+    assert outcomes.covered(found)["covered"] == pytest.approx(0.6)
 
 
 def test_activation_is_no_end_of_the_interval(found):

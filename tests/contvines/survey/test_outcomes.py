@@ -1,19 +1,11 @@
-"""Outcomes of the coupled machine: activation is the borders and folds of the diagram, shares and gaps add up."""
+"""Outcomes of the coupled machine: activation is the borders and folds of the diagram, shares are those of an atlas."""
 
 import numpy as np
 import pytest
 
 import contvines as cv
 from contvines.survey import survey
-from contvines.survey.outcomes import (
-    Findings,
-    activation,
-    coexisting,
-    covered,
-    gaps,
-    share,
-    stable_range,
-)
+from contvines.survey.outcomes import Findings, activation
 from orbits import Coupled
 from orbits.design import Family
 
@@ -25,49 +17,15 @@ MACHINE = Coupled(
 )
 
 
-@pytest.fixture(scope="module")
-def found():
+def test_activation_is_at_special_points():
     seed = MACHINE.orbit("LR", forcing=1.2)
     graph = cv.diagram(seed, over="forcing", within=(0.05, 2.0), depth=2)
-    return Findings(graph, seed, [(1.0, {}, "LR"), (1.0, {}, "tt")])
-
-
-def test_activation_is_at_special_points(found):
-    values = activation(found)
-    places = [float(point.value) for point in found.graph.special.values()]
+    values = activation(Findings(graph, seed, [(1.0, {}, "LR"), (1.0, {}, "tt")]))
+    places = [float(point.value) for point in graph.special.values()]
     for value in values.values():
         assert np.isnan(value) or min(abs(value - place) for place in places) < 1e-8
     assert np.isfinite(values["activation_from_above"])
     assert values["activation_from_above"] <= np.nan_to_num(values["activation_from_below"], nan=2.0)
-
-
-def test_gaps_and_cover_are_the_whole(found):
-    low, high = found.graph.within
-    open_ = sum(b - a for a, b in gaps(found.graph)) / (high - low)
-    assert covered(found)["covered"] == pytest.approx(1.0 - open_, rel=1e-12)
-    inside = stable_range(found, "LR")
-    assert 0.0 < inside["stable_LR"] <= inside["stable_LR_to"] - inside["stable_LR_from"] + 1e-12
-
-
-def test_shares(found):
-    assert share(found, "LR") == {"share_LR": 0.5}
-    assert np.isnan(share(Findings(found.graph, None), "LR")["share_LR"])
-
-
-def test_coexisting_responses_are_counted(found):
-    """As many as `at` finds stable points of at any of 401 values."""
-    values = np.linspace(*found.graph.within, 401)
-    counts = [
-        sum(
-            1
-            for branch in found.graph
-            if branch.real
-            for low, high in branch.stable_intervals()
-            if low <= value <= high
-        )
-        for value in values
-    ]
-    assert coexisting(found) == {"coexisting": max(counts), "ambiguous": np.mean(np.array(counts) > 1)}
 
 
 def test_an_atlas_of_each_machine_is_the_atlas_of_that_machine():

@@ -87,6 +87,7 @@ def turning(draw, size):
 SEVERAL = (0, 1, 2)
 FACTORS = [
     *((normal, (length, n), 1e-9, SEVERAL) for n in (1, 2, 3, 4) for length in (1, 2, 5, 30)),
+    (normal, (1, 6), 1e-9, range(20)),
     *((graded, (n,), 1e-8, seeds) for n, seeds in ((2, (3, 6, 7)), (4, (1,)))),  # of bases that are no worse
     *((unlike, (length,), 1e-6, SEVERAL) for length in (1, 4, 30)),
     *((turning, (size,), 1e-8, SEVERAL) for size in (1e-40, 1.0, 1e60)),
@@ -126,18 +127,12 @@ def test_singular_second_block_gives_nan():
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 6])
-def test_small_eigenvalues(n):
+def test_eigenvalues_of_special_matrices(n):
     """Of one factor: Francis' double shifts in the native core."""
-    draw = np.random.default_rng(n)
 
     def values(matrix):
         return compute(multipliers, matrix[None])
 
-    for _ in range(50):
-        matrix = draw.normal(size=(n, n)) * 10.0 ** draw.uniform(-2, 2, (n, 1))
-        expected, found = np.linalg.eigvals(matrix), values(matrix)
-        assert max(np.abs(expected - x).min() for x in found) < 1e-10 * np.abs(matrix).max()
-        assert found.sum() == pytest.approx(np.trace(matrix), abs=1e-11 * np.abs(matrix).max())
     assert not np.any(values(np.diag(np.ones(n - 1), 1)))
     assert sorted(values(np.diag(np.arange(n) + 1.0)).real) == pytest.approx(range(1, n + 1))
     assert np.abs(values(np.roll(np.eye(n), 1, axis=0))) == pytest.approx(np.ones(n))
