@@ -40,9 +40,6 @@ class Line(ProblemDefaults):
         return ("velocity-graze", "wall-graze")[j]
 
 
-PARABOLA = {"curve": lambda u, p: (p - u * u, -2.0 * u, 1.0), "start": (-0.6, 0.36)}
-
-
 class Word(Line):
     """u = offset + slope p with margins sides * (p - at), or with functions of its own; what is beyond its borders functions say."""
 

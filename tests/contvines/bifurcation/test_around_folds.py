@@ -5,7 +5,7 @@ import pytest
 
 import contvines as cv
 from contvines.bifurcation.kinds import BORDERS
-from tests.contvines.lines import PARABOLA, Line
+from tests.contvines.lines import Line
 
 
 def map_of(excess, bend, middle):
@@ -35,43 +35,17 @@ def test_both_are_found_and_the_fold(max_step, middle, excess):
     assert found == pytest.approx(list(x), abs=1e-7)
 
 
-def on_the_parabola(multipliers, max_step):
-    """Folds, doublings and pairs of p = u^2, which turns at u = 0, with given multipliers; and the graph."""
-    problem = Line(multipliers=multipliers, **PARABOLA)
-    graph = cv.diagram(problem, within=(-0.2, 0.4), settings={"max_step": max_step}, depth=0)
-    (fold,), flips, pairs = (graph.of_kind(k) for k in ("fold", "period-doubling", "neimark-sacker"))
-    assert abs(fold.value) < 1e-14
-    return [point.u[0] for point in flips], [point.u[0] for point in pairs], graph
-
-
 @pytest.mark.parametrize("max_step", [0.1, 0.03])
 @pytest.mark.parametrize("pole", [1e-5, 4e-3])
 @pytest.mark.parametrize("k", [0.3, 0.9, 1.1])
 def test_a_multiplier_that_comes_back_from_infinity_beside_a_fold(max_step, pole, k):
-    """As where an event of a virtual orbit grazes. It is -1 at u = 2 pole/(2 - k), and inside the circle before the fold and behind that."""
-    flips, _, _ = on_the_parabola(lambda u, p: [1.0 + k * u / (pole - u)], max_step)
-    assert flips == pytest.approx([2.0 * pole / (2.0 - k)], rel=1e-8)
-
-
-@pytest.mark.parametrize("max_step", [0.1, 0.03, 0.003])
-@pytest.mark.parametrize("gap", [1e-9, 1e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-4, 1e-3])
-def test_a_pair_that_leaves_between_a_doubling_and_a_fold(max_step, gap):
-    """One multiplier is outside before all three and one behind, past -1 and past +1: a doubling and a fold account for that.
-
-    With z = w tanh(u/w) the product of both is 1 + (z + gap)/(2 gap), and one minus the sum plus the product is -0.8 z/gap.
-    """
-    w = 0.01
-
-    def multipliers(u, p):
-        z = w * np.tanh(u / w)
-        product = 1.0 + (z + gap) / (2.0 * gap)
-        return np.roots([1.0, -(1.0 + product + 0.8 * z / gap), product])
-
-    flips, pairs, graph = on_the_parabola(multipliers, max_step)
-    for found, z in ((flips, -gap * 5.0 / 1.8), (pairs, -gap)):
-        assert found == pytest.approx([w * np.arctanh(z / w)] * len(found), rel=1e-6)
-    if gap < 5e-6:  # on the parts into which the step is halved the parameter turns by less than rounding
-        assert len(flips) <= 1 and len(pairs) <= 1
-        assert (flips and pairs) or any(stretch.low < 1e-10 for stretch in graph.unresolved)
-    else:
-        assert len(flips) == len(pairs) == 1 and not graph.unresolved
+    """As where an event of a virtual orbit grazes: on p = u^2, which turns at u = 0, it is -1 at u = 2 pole/(2 - k), and inside the circle before the fold and behind that."""
+    problem = Line(
+        multipliers=lambda u, p: [1.0 + k * u / (pole - u)],
+        curve=lambda u, p: (p - u * u, -2.0 * u, 1.0),
+        start=(-0.6, 0.36),
+    )
+    graph = cv.diagram(problem, within=(-0.2, 0.4), settings={"max_step": max_step}, depth=0)
+    (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
+    assert abs(fold.value) < 1e-14
+    assert flip.u[0] == pytest.approx(2.0 * pole / (2.0 - k), rel=1e-8)

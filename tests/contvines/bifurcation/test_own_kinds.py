@@ -2,12 +2,10 @@
 
 import runpy
 from pathlib import Path
-from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import contvines as cv
 from contvines.command.study import read_study
@@ -134,32 +132,18 @@ def test_a_zero_trace_on_a_locus_of_folds_is_a_bogdanov_takens_point():
 
 
 def test_cycles_of_a_given_period_are_followed_on_their_mesh():
-    """Beside the cycle to which an integration settles."""
+    """On the circle r = 1 the angle turns at the rate w (1 + a x): the period is 2 pi / (w sqrt(1 - a^2))."""
 
     def rates(x, p):
-        return [x[1], p.mu * (1 - x[0] ** 2) * x[1] - p.stiffness * x[0]]
-
-    def up(t, x):
-        return x[0]
-
-    up.direction = 1.0
+        growth, turn = 1 - x[0] ** 2 - x[1] ** 2, p.w * (1 + p.a * x[0])
+        return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1]]
 
     def slow(point):
         return point.measure("period") - 8.0
 
     kind = cv.Kind("slow", "SLW", test=slow, locus=slow)
-    flow = cv.FlowProblem(rates, [0.0, 0.0], {"mu": 1.0, "stiffness": 1.0})
-    graph = with_kind(flow.attractor([1.0, 0.0]), kind, (1.0, 4.0), "mu")
-    found = cv.locus(graph["SLW1"], over="stiffness", within=(0.8, 1.3))
-    for mu, stiffness in found.values[[0, len(found) // 2, -1]]:
-        p = SimpleNamespace(mu=mu, stiffness=stiffness)
-        run = solve_ivp(
-            lambda t, x, p=p: rates(x, p),
-            (0.0, 100.0),
-            [1.0, 0.0],
-            "DOP853",
-            events=up,
-            rtol=1e-11,
-            atol=1e-12,
-        )
-        assert np.diff(run.t_events[0])[-1] == pytest.approx(8.0, abs=1e-6)
+    flow = cv.FlowProblem(rates, [0.0, 0.0], {"w": 1.0, "a": 0.3})
+    graph = with_kind(flow.attractor([1.0, 0.0]), kind, (0.5, 2.0), "w")
+    w, a = cv.locus(graph["SLW1"], over="a", within=(0.0, 0.9)).values.T
+    assert {0.0, 0.9} == {a[0], a[-1]}
+    assert w == pytest.approx(np.pi / 4 / np.sqrt(1 - a * a), abs=1e-9)

@@ -1,4 +1,4 @@
-"""The scan of chunks: the native core against numpy on drawn rows."""
+"""The scan of chunks: multipliers known by hand, and the native core against numpy on drawn rows."""
 
 from functools import partial
 from types import SimpleNamespace
@@ -39,6 +39,13 @@ def symmetry(apply, engine):
     """The test of a symmetry."""
     found = SimpleNamespace(apply=apply, offset=None, kind="symmetry-breaking")
     return SymmetryTest(found, engine.n, engine.shift)
+
+
+def test_spectra_known_by_hand():
+    rows = np.array([[np.e, 0.0, -(np.e**-2), 0.0], [0.0, 1.0, 0.0, -1.0], [np.e, 0.0, np.e**3, 0.0]])
+    found = with_arrays(Shown(1, 2, 0), [], chunk(np.zeros((3, 1)), np.arange(3.0), rows)).spectra
+    np.testing.assert_allclose(found.near, [1.0, np.nan, 1.0], rtol=1e-14)
+    np.testing.assert_allclose(found.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
 
 
 NUMBERS = st.one_of(

@@ -47,16 +47,3 @@ def test_shares_of_henons_basin_are_within_three_sigma_of_counts_from_elsewhere(
     share = np.mean(index == [m.kind for m in motions].index("chaotic"))
     for other, count in ((counted, 8192), (0.451, 1000)):
         assert abs(share - other) < 3 * np.sqrt(other * (1 - other) / count)
-
-
-def test_coexisting_cycles_are_roots_of_their_own():
-    """x -> x + sin(2 pi x)/8 on the line: every half-integer attracts, every integer repels: separate for ever."""
-    problem = cv.MapProblem(lambda x, p: x + p * np.sin(2 * np.pi * x) / 8, [0.5], 1.0)
-    graph = cv.atlas(problem.population(box=[(0.0, 3.0)]), within=(0.5, 1.5), values=3, starts=64, depth=0)
-    assert sorted({round(float(b.points[0, 0]), 9) for b in graph}) == [0.5, 1.5, 2.5]
-    for value in {a.value for a in graph.attractors}:
-        here = [a for a in graph.attractors if a.value == value]
-        assert sum(a.share for a in here) == pytest.approx(1.0)
-        assert sorted(a.branch for a in here) == sorted(graph.branches)
-        for a in here:
-            assert a.share == pytest.approx(1 / 3, abs=0.05 if a.starts == 64 else 0.1)  # by symmetry
