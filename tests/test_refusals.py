@@ -2,6 +2,7 @@
 
 # pyright: reportArgumentType=false, reportCallIssue=false, reportAttributeAccessIssue=false
 # what is refused here has wrong types on purpose
+import pickle
 from functools import cache
 
 import numpy as np
@@ -315,6 +316,9 @@ REFUSED = {
     # machines, words and orbits
     "restitution = 1.4": lambda: Absorber(**NUMBERS | {"restitution": 1.4}),
     "begins at": lambda: PAPER.symmetric_orbit(0.1),
+    "the other way": lambda: PAPER.orbit(
+        "s-s+", amplitude=0.115, guess=PAPER.orbit("s+s-", amplitude=0.115).nodes
+    ),
     "one [phase": lambda: PAPER.orbit("LR", amplitude=0.5, guess=[[1.0, 2.0]]),
     "simulator finds": lambda: PAPER.orbit("LRLtLt", amplitude=0.3),
     "word = 1000 is no word: give the events of a period as text, such as 'LR'": lambda: PAPER.orbit(
@@ -353,6 +357,13 @@ REFUSED = {
     "a.avi: an animation": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("a.avi"),
     "no folder": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("none/a.gif"),
     "seconds = 0.0": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("a.gif", seconds=0.0),
+    "'box' cannot go to another process": lambda: pickle.dumps(box()),
+    "response = 'max_x2': expected max_x, min_x, max_abs_x": lambda: box(response="max_x2"),
+    "'box' is forced: its motions without events are orbits with the word ''": lambda: box().smooth(),
+    "forcing is missing": lambda: Coupled(**NUMBERS, mass_ratio=0.01).vector(),
+    "gravity pulls it to a wall and keeps it there": lambda: orbits.Cavity(
+        restitution=0.5, friction=0.1, gravity=0.3, slope=0.5, mass_ratio=0.0
+    ).orbit("", amplitude=0.05),
     # quantities, design and theory
     "cavity = 0.0 must be positive": lambda: Design(cavity=[0.01, 0.0]),
     "one parameter set": lambda: ms.equilibria(ms.SlowFlow(), np.array([0.0, 1.0])),

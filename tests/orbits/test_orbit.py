@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractors, sweep
-from orbits.starts.find import StartError
-from orbits.theory.manifolds import activation, friction_level, impact_loss, sliding_bounds, symmetry_limit
-from tests.machines import ABSORBER
+from orbits.theory.manifolds import activation, friction_level, impact_loss, sliding_bounds
+from tests.machines import ABSORBER, STRONG
 
 machines = st.builds(
     Absorber,
@@ -28,14 +27,6 @@ def numbers(machine):
     return float(R), float(H)
 
 
-def test_published_bounds():
-    """C^2 at fold and symmetry breaking: Youssef, Karoui, Leine, for both of their parameter sets (six digits)."""
-    for mu, g, fold, breaking in ((0.5, 0.211, 0.0637942, 0.5282903), (0.1, 0.422, 0.0233851, 0.4961028)):
-        R, H = impact_loss(0.76), friction_level(mu, g, 0.006)
-        assert float(activation(R, H).amplitude ** 2) == pytest.approx(fold, abs=6e-8)
-        assert float(symmetry_limit(R, H).amplitude ** 2) == pytest.approx(breaking, abs=6e-8)
-
-
 @settings(max_examples=60, deadline=None)
 @given(machines, st.floats(0.0, 1.0))
 def test_closed_form_solves_the_maps(machine, above):
@@ -49,18 +40,10 @@ def test_closed_form_solves_the_maps(machine, above):
 def test_determinant_with_turns():
     """det A = prod r^2 over impacts * prod (|v''| - a)/(|v''| + a) over turns."""
     orbit = ABSORBER.orbit("LRtt", amplitude=0.95)
-    a = 1.006 * 0.5 * 0.211
-    shaking = [
-        abs(0.95 * np.sin(psi)) for psi, letter in zip(orbit.nodes[:, 0], orbit.word.events) if letter == "t"
-    ]
-    wanted = 0.76**4 * np.prod([(v - a) / (v + a) for v in shaking])
+    turns = orbit.nodes[[letter == "t" for letter in orbit.word.events], 0]
+    shaking, a = np.abs(0.95 * np.sin(turns)), 1.006 * 0.5 * 0.211
+    wanted = 0.76**4 * np.prod((shaking - a) / (shaking + a))
     assert np.prod(orbit.multipliers).real == pytest.approx(wanted, rel=1e-10)
-
-
-def test_a_stick_forgets():
-    orbit = ABSORBER.orbit("LRs", amplitude=np.sqrt(0.74))
-    assert np.abs(orbit.multipliers).min() == 0.0
-    assert orbit.real
 
 
 @pytest.mark.parametrize("times", [2, 16, 256])
@@ -110,13 +93,12 @@ def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
     ):
         orbit = ABSORBER.orbit(word, amplitude=np.sqrt(square))
         assert orbit.real and orbit.symmetric and orbit.residual < 1e-12
-        assert len(orbit.multipliers) == 1
-        assert abs(orbit.multipliers[0]) < 1.0
+        assert len(orbit.multipliers) == 1 and abs(orbit.multipliers[0]) < 1.0
 
 
 def test_without_friction_words_need_no_turns():
     """The same physical motion for a -> 0: three impacts, once with a turn (small a), once without (a = 0)."""
-    free = Absorber(restitution=0.76, friction=0.0, gravity=0.211, mass_ratio=0.006)
+    free = Absorber(**STRONG | {"friction": 0.0})
     rough = free.changed(friction=1e-7)
     guess = rough.orbit("LRtR", amplitude=1.35)
     hits = [i for i, letter in enumerate(guess.word.events) if letter in "LR"]
@@ -138,12 +120,6 @@ def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
     orbit = ABSORBER.orbit("tt", amplitude=amplitude, guess=guess)
     assert orbit.real
     assert orbit.nodes[:, 1] == pytest.approx([-way * turning, way * turning], abs=1e-12)
-
-
-def test_a_guess_against_stated_directions_is_refused():
-    orbit = ABSORBER.orbit("s+s-", amplitude=0.115)
-    with pytest.raises(StartError, match="the other way"):
-        ABSORBER.orbit("s-s+", amplitude=0.115, guess=orbit.nodes)
 
 
 def test_diagrams_sweeps_and_attractors_spell_a_motion_alike():

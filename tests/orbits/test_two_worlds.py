@@ -39,14 +39,8 @@ def attractor_of(seed, max_period=4):
     """The simulated attractor if it is periodic, makes events and has at most 8 impacts; else None."""
     machine, amplitude, start = draw(seed)
     found = find_attractor(machine, start, amplitude=amplitude, max_period=max_period)
-    if (
-        found.kind not in ("periodic", "sliding")
-        or found.word is None
-        or not len(found.word)
-        or found.impacts > 8
-    ):
-        return None
-    return found
+    known = found.kind in ("periodic", "sliding") and found.word is not None
+    return found if known and len(found.word) and found.impacts <= 8 else None
 
 
 def last_events(found):
@@ -72,25 +66,20 @@ def test_every_simulated_attractor_solves_its_word(block):
         if found is None:
             continue
         seen += 1
+        about = (seed, found.text)
         solved = polish(found.orbit)
-        assert solved is not None, (seed, found.text)
-        assert solved.real, (seed, found.text, solved.margin)
+        assert solved is not None and solved.real and solved.stable, about
         told = replay(found.orbit, thorough=True)
         simulated = told.multipliers
         if solved.impacts == 0:  # the trivial multiplier of a motion that may be moved as a whole
             trivial = int(np.argmin(np.abs(simulated - 1.0)))
             assert simulated[trivial] == pytest.approx(1.0, abs=1e-6)
             simulated = np.delete(simulated, trivial)
-        assert told.error < 1e-9, (seed, found.text, told.message)
-        slowest = np.abs(solved.multipliers).max(
-            initial=0.0
-        )  # the simulation returns to 1e-6, and has as far to go as that lets it
-        assert distance(solved.nodes, last_events(found)) < 3e-6 / max(1.0 - slowest, 1e-3), (
-            seed,
-            found.text,
-        )
-        assert np.poly(simulated) == pytest.approx(np.poly(solved.multipliers), abs=1e-6), (seed, found.text)
-        assert solved.stable, (seed, found.text)
+        assert told.error < 1e-9, (*about, told.message)
+        # the simulation returns to 1e-6, and has as far to go as the slowest multiplier lets it
+        slowest = np.abs(solved.multipliers).max(initial=0.0)
+        assert distance(solved.nodes, last_events(found)) < 3e-6 / max(1.0 - slowest, 1e-3), about
+        assert np.poly(simulated) == pytest.approx(np.poly(solved.multipliers), abs=1e-6), about
     assert seen >= 3
 
 
@@ -108,11 +97,10 @@ def comes_back(orbit):
     sample = orbit.sample(400)
     phase, w = sample["phase"], sample["w"]
     for size, near in ((1e-6, 1e-7), (1e-8, 1e-9)):
+        w_there = float(events.w[place])
         start = {
             "phase": float(events.phase[place]) % (2.0 * np.pi),
-            "w": float(events.w[place]) * (1.0 - size)
-            if orbit.impacts == 0
-            else float(np.clip(events.w[place], -1, 1)),
+            "w": float(np.clip(w_there, -1, 1)) if orbit.impacts else w_there * (1.0 - size),
             "w_rate": float(events.rate_post[place]) * (1.0 + size),
         }
         run = simulate(orbit.model, start, periods=(cycles + 2) * orbit.periods, amplitude=amplitude)
@@ -143,35 +131,27 @@ def test_no_orbit_reported_real_and_stable_is_left(block):
             graph = cv.diagram(
                 polish(found.orbit), over="amplitude", within=(max(0.02, 0.8 * centre), 1.2 * centre), depth=1
             )
-        for branch in graph.branches.values():
+        for branch in graph:
             inner = np.flatnonzero(branch.stable[1:-1]) + 1
             for i in rng.permutation(inner)[:2]:
                 orbit = branch.orbit(int(i))
                 if not len(orbit.word) or orbit.margin < 1e-3 or np.abs(orbit.multipliers).max() > 0.99:
                     continue
-                assert branch.real
-                assert orbit.real
                 tried += 1
+                assert branch.real and orbit.real
                 assert comes_back(orbit), (seed, branch.label, orbit.word.text, float(branch.values[i]))
     assert tried >= 5
 
 
 def test_the_tests_would_notice():
     """Unstable orbits are left, and so is an orbit of the bare maps that no machine follows."""
-    absorber = ABSORBER
-    unstable = absorber.symmetric_orbit(amplitude=np.sqrt(0.6))
-    assert unstable.real
-    assert not unstable.stable
-    assert not comes_back(unstable)
-    graph = cv.diagram(
-        absorber.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 0.92), depth=1, virtual=True
-    )
-    ghosts = [
-        b for b in graph.branches.values() if not b.real and b.description["word"] == "LR" and b.stable.any()
-    ]
+    unstable = ABSORBER.symmetric_orbit(amplitude=np.sqrt(0.6))
+    assert unstable.real and not unstable.stable and not comes_back(unstable)
+    start = ABSORBER.symmetric_orbit(amplitude=0.7)
+    graph = cv.diagram(start, over="amplitude", within=(0.6, 0.92), depth=1, virtual=True)
+    ghosts = [b for b in graph if not b.real and b.description["word"] == "LR" and b.stable.any()]
     assert ghosts
     for branch in ghosts:
         ghost = branch.orbit(int(np.flatnonzero(branch.stable)[-1]))
-        assert not ghost.real
-        assert not comes_back(ghost)
+        assert not ghost.real and not comes_back(ghost)
         assert not ghost.replay() < 1e-3

@@ -1,4 +1,4 @@
-"""Where heyoka is missing scipy integrates declared machines: the same orbits and borders, told in one line."""
+"""Where heyoka is missing scipy integrates declared machines: the same orbits and borders."""
 
 import json
 import os
@@ -6,67 +6,41 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+import contvines as cv
 from tools.pages.pages import page
 
 pytestmark = pytest.mark.slow
 
-SCRIPT = """
-import json, sys
-import contvines as cv
-from tools.pages.pages import page
-found = {}
-for name in ("impact_oscillator", "belt_slider", "den_hartog"):
-    orbit = page(name).attractor().found
-    found[name] = [orbit.word.text, orbit.nodes.tolist(), [abs(m) for m in orbit.multipliers]]
-graph = cv.diagram(page("impact_oscillator").orbit("R", frequency=2.3), over="frequency", within=(2.2, 2.8), depth=0)
-found["flips"] = [p.value for p in graph.of_kind("period-doubling")]
-json.dump(found, sys.stdout)
-"""
+
+def found():
+    """Words, nodes and multipliers of attractors, and where a period doubles."""
+    orbits = [page(name).attractor().found for name in ("impact_oscillator", "belt_slider", "den_hartog")]
+    start = page("impact_oscillator").orbit("R", frequency=2.3)
+    graph = cv.diagram(start, over="frequency", within=(2.2, 2.8), depth=0)
+    numbers = [number for orbit in orbits for number in [*orbit.nodes.ravel(), *map(abs, orbit.multipliers)]]
+    flips = [point.value for point in graph.of_kind("period-doubling")]
+    return [[orbit.word.text for orbit in orbits], len(flips), [*numbers, *flips]]
 
 
-@pytest.fixture(scope="module")
-def by_scipy():
-    run = subprocess.run(
-        [sys.executable, "-c", SCRIPT],
-        env={**os.environ, "CONTVINES_PAGES": "scipy"},
+def by(integrator):
+    script = "import json; from tests.orbits.declared.test_by_scipy import found; print(json.dumps(found()))"
+    return subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "CONTVINES_PAGES": integrator},
         cwd=Path(__file__).parents[3],
         capture_output=True,
         text=True,
-        check=True,
         timeout=600,
     )
-    return json.loads(run.stdout)
 
 
-@pytest.mark.parametrize("name", ["impact_oscillator", "belt_slider", "den_hartog"])
-def test_attractors_are_the_same(by_scipy, name):
-    word, nodes, multipliers = by_scipy[name]
-    orbit = page(name).attractor().found
-    assert orbit.word.text == word
-    assert np.array(nodes) == pytest.approx(orbit.nodes, abs=1e-10)
-    assert multipliers == pytest.approx(np.abs(orbit.multipliers), abs=1e-9)
-
-
-def test_a_period_doubling_is_where_it_is_in_closed_form(by_scipy):
-    """Of an undamped oscillator on its wall with restitution e, driven at W: see `test_closed_forms`."""
-    import contvines as cv
-
-    graph = cv.diagram(
-        page("impact_oscillator").orbit("R", frequency=2.3), over="frequency", within=(2.2, 2.8), depth=0
-    )
-    told = [point.value for point in graph.of_kind("period-doubling")]
-    assert told and by_scipy["flips"] == pytest.approx(told, abs=1e-8)
+def test_orbits_and_a_period_doubling_are_the_same():
+    *words, numbers = json.loads(by("scipy").stdout)
+    *known, expected = found()
+    assert words == known and known[1] and numbers == pytest.approx(expected, abs=1e-8)
 
 
 def test_an_unknown_integrator_is_refused():
-    run = subprocess.run(
-        [sys.executable, "-c", "from orbits.integrators.engine import engine; engine()"],
-        env={**os.environ, "CONTVINES_PAGES": "rk4"},
-        cwd=Path(__file__).parents[3],
-        capture_output=True,
-        text=True,
-    )
-    assert "CONTVINES_PAGES=rk4: say heyoka or scipy" in run.stderr
+    assert "CONTVINES_PAGES=rk4: say heyoka or scipy" in by("rk4").stderr

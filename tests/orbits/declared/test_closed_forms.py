@@ -5,15 +5,20 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import contvines as cv
+from orbits import Machine, Switch, Wall
+from orbits.symbols import cos
+from tests.orbits.declared.oscillators import FLOOR, oscillator
 from tools.pages.pages import page
 
 
-def specials(graph, kind):
-    return sorted(point.value for point in graph.special.values() if point.kind == kind)
+def values(graph, kind):
+    return [point.value for point in graph.of_kind(kind)]
 
 
+# ---------------------------------------------------------------------------------------------- impacts
 def single_impact(frequency, restitution, gap):
     """(phase, speed after the impact, multipliers' trace) of x'' + x = cos(W t) with one impact per period.
 
@@ -36,20 +41,14 @@ def single_impact(frequency, restitution, gap):
 
     def trace(f, v):
         def x(s, phase, speed):
-            A = gap - g * mp.cos(phase)
-            B = speed + g * W * mp.sin(phase)
+            A, B = gap - g * mp.cos(phase), speed + g * W * mp.sin(phase)
             return A * mp.cos(s) + B * mp.sin(s) + g * mp.cos(W * s + phase)
 
-        def rate(s, phase, speed):
-            A = gap - g * mp.cos(phase)
-            B = speed + g * W * mp.sin(phase)
-            return -A * mp.sin(s) + B * mp.cos(s) - g * W * mp.sin(W * s + phase)
+        def slope(*orders):
+            return mp.diff(x, (T, f, v), orders)
 
-        dT = [-mp.diff(x, (T, f, v), n) / rate(T, f, v) for n in ((0, 1, 0), (0, 0, 1))]
-        acceleration = mp.diff(rate, (T, f, v), (1, 0, 0))
-        here = 1 + W * dT[0]
-        there = -e * (mp.diff(rate, (T, f, v), (0, 0, 1)) + acceleration * dT[1])
-        return here + there
+        later = [-slope(*n) / slope(1, 0, 0) for n in ((0, 1, 0), (0, 0, 1))]
+        return 1 + W * later[0] - e * (slope(1, 0, 1) + slope(2, 0, 0) * later[1])
 
     return [(f, v, trace(f, v)) for f, v in found]
 
@@ -74,7 +73,7 @@ def test_period_doubling_of_the_impact_oscillator():
             lambda W: 1 + single_impact(W, mp.mpf("0.8"), 0)[0][2] + mp.mpf("0.64"), (2.6, 2.7)
         )
     graph = cv.diagram(machine.attractor(frequency=2.3), over="frequency", within=(2.2, 2.7), depth=0)
-    assert specials(graph, "period-doubling") == pytest.approx([float(exact)], abs=1e-10)
+    assert values(graph, "period-doubling") == pytest.approx([float(exact)], abs=1e-10)
 
 
 def test_fold_of_the_impact_oscillator_with_a_gap():
@@ -89,47 +88,82 @@ def test_fold_of_the_impact_oscillator_with_a_gap():
     f, v, _ = branches[0]
     orbit = machine.orbit("R", 1, [[float(f), 0.9 * exact, float(v)]], frequency=W, gap=0.9 * exact)
     graph = cv.diagram(orbit, over="gap", within=(0.5 * exact, 1.5 * exact), depth=0)
-    assert specials(graph, "fold") == pytest.approx([exact], abs=1e-10)
+    assert values(graph, "fold") == pytest.approx([exact], abs=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("n", "g", "e", "W"), [(1, 0.1, 0.8, 1.0), (2, 0.07, 0.63, 1.3), (3, 0.05, 0.7, 0.8)]
-)
-def test_fold_and_flip_of_the_bouncing_ball(n, g, e, W):
-    """Once in n periods the ball leaves with g T/2 and lands with -g T/2, so the table moves with w = (1 - e)/(1 + e) g T/2 there.
+def test_the_fold_of_a_bounce_with_quadratic_drag():
+    """Drag turns with the velocity, which an impact turns at once: it jumps over the surface of the switch.
 
-    Fold: A W = w. Flip: A W^2 cos f = 2 g (1 + e^2)/(1 + e)^2 with A W sin f = -w still.
+    One bounce a period: up with v0, down with v1, and the table moves with (v0 - e v1)/(1 + e) there, at most A W.
+    Up: v = k tan, over v0 in the time atan(v0/k)/sqrt(g c), to the height ln(1 + (v0/k)^2)/(2 c), k^2 = g/c.
+    Down from there: v1^2 = k^2 (1 - exp(-2 c h)), in the time atanh(v1/k)/sqrt(g c).
     """
-    machine = page("bouncing_ball")
-    speed = g * math.pi * n / W
-    needed = (1 - e) / (1 + e) * speed / W
-    flip = math.hypot(needed, 2 * g * (1 + e**2) / (1 + e) ** 2 / W**2)
-    amplitude = 0.5 * (needed + flip)
-    phase = -math.asin(needed / amplitude)
-    guess = [[phase, amplitude * math.cos(phase), speed]]
-    numbers = {"amplitude": amplitude, "gravity": g, "restitution": e, "frequency": W}
-    orbit = machine.orbit("B", n, guess, **numbers)
-    assert orbit.stable
-    graph = cv.diagram(orbit, over="amplitude", within=(0.5 * needed, 1.5 * flip), depth=0)
-    assert specials(graph, "fold") == pytest.approx([needed], abs=1e-10)
-    assert specials(graph, "period-doubling") == pytest.approx([flip], abs=1e-10)
+    gravity, drag, restitution = 0.1, 0.1, 0.8
+    ball = Machine(
+        name="dragged",
+        states=("y", "v"),
+        parameters={"amplitude": 0.07, "frequency": 1.0},
+        phase_rate="frequency",
+        motion=lambda s, phase, p, contact: (s.v, -gravity - drag * s.v**2 * contact.up),
+        contacts=[
+            Wall("B", lambda s, phase, p: s.y - p.amplitude * cos(phase), {"v": 1.0}, restitution),
+            Switch("up", surface=lambda s, phase, p: s.v),
+        ],
+    )
+    k, rate = math.sqrt(gravity / drag), math.sqrt(gravity * drag)
+
+    def landing(v0):
+        height = math.log1p((v0 / k) ** 2) / (2 * drag)
+        return k * math.sqrt(-math.expm1(-2 * drag * height))
+
+    def late(v):
+        return (math.atan(v / k) + math.atanh(landing(v) / k)) / rate - 2 * math.pi
+
+    v0 = brentq(late, 0.1, 1.0, xtol=1e-15)
+    exact = (v0 - restitution * landing(v0)) / (1 + restitution)
+    start = ball.attractor({"y": 0.1, "v": 0.33, "phase": -0.8})
+    assert start.word.text == "B up-" and start.orbit.real and start.orbit.replay() < 1e-10
+    graph = cv.diagram(start, over="amplitude", within=(0.02, 0.09), depth=0)
+    assert values(graph, "fold") == pytest.approx([exact], abs=1e-10)
+
+
+# ---------------------------------------------------------------------------------------------- friction and soft stops
+def reach(W, friction):
+    """How far x'' + x = cos(W t) - friction sign(x') goes without sticks (J. P. Den Hartog, Trans. ASME 53 (1931) APM-53-9)."""
+    U = math.sin(math.pi / W) / (W * (1 + math.cos(math.pi / W)))
+    return math.sqrt((1 / (1 - W**2)) ** 2 - (friction * U) ** 2)
 
 
 @pytest.mark.parametrize(("W", "f"), [(0.8, 0.3), (0.62, 0.45)])
 def test_den_hartogs_onset_of_sticking(W, f):
-    """Turns at +-x0 half a period apart: x0^2 = (F/(1 - W^2))^2 - (f S/(W (1 + C)))^2, C, S = cos, sin(pi/W).
-
-    At a turn the shaking beats friction while x0 W^2 > f.
-    """
-    machine = page("den_hartog")
-    C, S = math.cos(math.pi / W), math.sin(math.pi / W)
-    exact = abs(1 - W**2) * math.hypot(f / W**2, f * S / (W * (1 + C)))
-    start = machine.attractor(frequency=W, friction=f)
-    x0 = math.sqrt((1 / (1 - W**2)) ** 2 - (f * S / (W * (1 + C))) ** 2)
-    assert np.abs(start.orbit.nodes[:, 1]).max() == pytest.approx(x0, abs=1e-11)
+    """At a turn the shaking beats friction while it reaches further than f/W^2."""
+    start = page("den_hartog").attractor(frequency=W, friction=f)
+    assert np.abs(start.orbit.nodes[:, 1]).max() == pytest.approx(reach(W, f), abs=1e-11)
     graph = cv.diagram(start, over="forcing", within=(0.35, 1.1), depth=0)
-    assert min(specials(graph, "stick"), key=lambda v: abs(v - exact)) == pytest.approx(exact, abs=1e-10)
+    exact = brentq(lambda F: F * reach(W, f / F) - f / W**2, 0.35, 1.1, xtol=1e-14)
+    assert min(abs(value - exact) for value in values(graph, "stick")) < 1e-10
     assert graph["B1"].description["word"] == "tt"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("gap", "friction"), [(1.6, 0.3), (2.2, 0.45)])
+def test_a_turn_grazes_a_soft_stop_where_den_hartogs_amplitude_is_its_distance(gap, friction):
+    def force(s, phase, p, contact):
+        pressed = (1 + contact.stop) / 2
+        return cos(phase) - s.x - 4.0 * (s.x - p.gap) * pressed + contact.floor
+
+    numbers = {"frequency": 0.5, "friction": friction, "gap": gap}
+    machine = oscillator(force, Switch("stop", lambda s, phase, p: s.x - p.gap), FLOOR, parameters=numbers)
+    graze = brentq(lambda W: reach(W, friction) - gap, 0.5, 0.95, xtol=1e-14)
+    for start in (graze - 0.02, graze + 0.02):
+        orbit = machine.attractor(frequency=start)
+        graph = cv.diagram(orbit, over="frequency", within=(graze - 0.03, graze + 0.03), depth=1)
+        (point,) = graph.of_kind("switch-graze")
+        assert point.value == pytest.approx(graze, abs=1e-10)
+        words = {machine.word(b.description["word"]).canonical().events for b in graph}
+        assert {machine.word("stop+ t stop- t").canonical().events} < words
+        joined = {label for s in graph.switches if s.point == point.label for label in (s.source, s.target)}
+        assert len(joined) == 2
 
 
 @pytest.mark.parametrize(("F", "D", "gap"), [(0.5, 0.05, 1.0), (0.3, 0.02, 1.4), (0.8, 0.12, 0.9)])
@@ -140,4 +174,4 @@ def test_grazing_of_the_elastic_stop(F, D, gap):
     exact = math.sqrt(square.max())
     start = machine.attractor(frequency=1.15 * exact, forcing=F, damping=D, gap=gap)
     graph = cv.diagram(start, over="frequency", within=(0.95 * exact, 1.3 * exact), depth=0)
-    assert specials(graph, "switch-graze")[-1] == pytest.approx(exact, abs=1e-10)
+    assert max(values(graph, "switch-graze")) == pytest.approx(exact, abs=1e-10)

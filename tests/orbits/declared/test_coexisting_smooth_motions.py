@@ -6,22 +6,18 @@ from scipy.integrate import solve_ivp
 
 import contvines as cv
 from contvines.plots.atlas import plot_atlas
-from orbits import Machine
 from orbits.symbols import cos
+from tests.orbits.declared.oscillators import oscillator
 
 pytest.importorskip("pint")
 
 MASS, DAMPING, STIFFNESS, CUBIC, FORCE = 0.5, 0.9, 500.0, 2e7, 0.7
 
 
-def hardening():
-    return Machine(
-        name="hardening", states=("x", "v"), parameters={"frequency": 7.0}, phase_rate="frequency", mirror={},
-        motion=lambda s, phase, p, c: (
-            s.v, (FORCE * cos(phase) - DAMPING * s.v - STIFFNESS * s.x - CUBIC * s.x**3) / MASS
-        ),
-        units={"x": "mm", "v": "mm/s", "frequency": "Hz"}, response="max_abs_x",
-    )  # fmt: skip
+HARDENING = oscillator(
+    lambda s, phase, p, c: (FORCE * cos(phase) - DAMPING * s.v - STIFFNESS * s.x - CUBIC * s.x**3) / MASS,
+    parameters={"frequency": 7.0}, mirror={}, units={"x": "mm", "v": "mm/s", "frequency": "Hz"}, response="max_abs_x",
+)  # fmt: skip
 
 
 def size(x, v, frequency):
@@ -41,9 +37,7 @@ def size(x, v, frequency):
 
 
 def test_basins_tell_them_apart_and_know_no_mirror_images():
-    basins = cv.basins(
-        hardening(), "frequency", 7.0, within={"x": (-6.0, 6.0), "v": (-150.0, 150.0)}, points=8
-    )
+    basins = cv.basins(HARDENING, "frequency", 7.0, within={"x": (-6.0, 6.0), "v": (-150.0, 150.0)}, points=8)
     assert len(basins.attractors) == 2 and not any(about.mirror_share for about in basins.attractors)
     assert all(
         basins.told(k).startswith("no events through x = ") and " mm/s" in basins.told(k) for k in (0, 1)
@@ -56,19 +50,16 @@ def test_basins_tell_them_apart_and_know_no_mirror_images():
 
 def test_an_atlas_has_both_on_branches_of_their_own():
     atlas = cv.atlas(
-        hardening(), over="frequency", within=(6.0, 7.5), values=[6.71875, 7.2], starts=32, scan=0, depth=0
+        HARDENING, over="frequency", within=(6.0, 7.5), values=[6.71875, 7.2], starts=32, scan=0, depth=0
     )
     assert {about.branch for about in atlas.attractors} == {"B1", "B2"}
     known = [size(-2.0, 0.0, 6.9), size(5.0, 100.0, 6.9)]
     found = []
-    for branch in atlas.branches.values():
+    for branch in atlas:
         near = min(range(len(branch)), key=lambda i: abs(branch.values[i] - 6.9) + (not branch.stable[i]))
         found.append(branch.orbit(near).measure("max_abs_x"))
     assert sorted(found) == pytest.approx(known, rel=0.03)
-    (_, lower) = plot_atlas(atlas).axes[:2]
-    assert {text.get_text() for text in lower.get_legend().get_texts()} == {
-        "no events (B1)",
-        "no events (B2)",
-    }
+    legend = plot_atlas(atlas).axes[1].get_legend()
+    assert {text.get_text() for text in legend.get_texts()} == {"no events (B1)", "no events (B2)"}
     erosion = cv.robustness(atlas["B1"], 7.0)
     assert (erosion.word, erosion.reaches) == ("no events", "no events") and 1.0 < erosion.distance < 20.0

@@ -3,16 +3,13 @@
 The equations of the built-in machine stay regular there.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import contvines as cv
 import orbits
-from orbits.machines.page.loading import load_page
+from tools.pages.pages import page
 
-EXAMPLES = Path(__file__).parents[3] / "examples" / "machines"
 VALUES = {
     "damping": 0.8745771352957669,
     "mass_ratio": 0.0067354908145554546,
@@ -23,25 +20,23 @@ VALUES = {
 }
 
 
-OVER = "frequency"
-
-
 def branch_of(graph: cv.Graph, word: str) -> cv.Branch:
     """The last branch of a word."""
-    return [branch for branch in graph.branches.values() if branch.description["word"] == word][-1]
+    return [branch for branch in graph if branch.description["word"] == word][-1]
 
 
 @pytest.mark.slow
 def test_the_branch_beyond_a_border_is_known_by_its_stated_error() -> None:
     """Other steps, of other intervals, end at other places beside the border."""
-    whole = {"over": OVER, "within": (0.985, 1.02), "depth": 0}
+    whole = {"over": "frequency", "within": (0.985, 1.02), "depth": 0}
     own = cv.diagram(orbits.Coupled(**VALUES).orbit("LR", frequency=1.01), **whole)
     exact = min(own[label].value for _, label in branch_of(own, "LtsRts").marks)
-    machine = load_page(EXAMPLES / "coupled.py", "machine")
-    sliding = branch_of(cv.diagram(machine.orbit("LR", frequency=1.01, **VALUES), **whole), "LttRtt")
+    sliding = branch_of(cv.diagram(page("coupled").orbit("LR", frequency=1.01, **VALUES), **whole), "LttRtt")
     first = sliding.orbit(int(np.argmin(abs(sliding.values - 0.995))))
     for low in np.linspace(0.97, 0.99, 8).tolist():
-        graph = cv.diagram(first, over=OVER, within=(low, 0.996), depth=0, settings={"max_branches": 3})
+        graph = cv.diagram(
+            first, over="frequency", within=(low, 0.996), depth=0, settings={"max_branches": 3}
+        )
         marked = [graph[label] for _, label in branch_of(graph, "LtsRts").marks]
         border = min(marked, key=lambda point: point.value)
         assert abs(border.value - exact) <= border.location_error < 1e-9

@@ -13,8 +13,7 @@ from scipy.optimize import root
 
 import contvines as cv
 from orbits import DryFriction, Machine
-from orbits.machines.page.page import PageError
-from orbits.symbols import cos, exp
+from orbits.symbols import exp
 
 
 def belt():
@@ -65,9 +64,8 @@ def test_a_friction_oscillator_from_stick_slip_to_the_hopf_point_and_back(first,
     assert words == ["[-]", "equilibrium", "s-"]
     (hopf,) = graph.of_kind("hopf")
     assert hopf.value == pytest.approx(HOPF, abs=1e-11) and hopf.criticality == "subcritical"
-    borders = [p for p in graph.special.values() if p.kind in ("stick", "velocity-graze")]
-    assert len(borders) == 1
-    assert borders[0].value == pytest.approx(speed, abs=3e-9)
+    (border,) = (p for p in graph.special.values() if p.kind in ("stick", "velocity-graze"))
+    assert border.value == pytest.approx(speed, abs=3e-9)
     assert speed == pytest.approx(1.83660097, abs=1e-8)  # the published figure
     smooth = next(b for b in graph.branches.values() if b.description["word"] == "[-]")
     assert not smooth.stable.any()
@@ -77,17 +75,14 @@ def test_a_friction_oscillator_from_stick_slip_to_the_hopf_point_and_back(first,
     assert str(again) == str(graph)
 
 
-def van_der_pol():
-    return Machine(
-        name="vdp",
+def test_a_machine_without_contacts_that_excites_itself():
+    machine = Machine(
+        name="van_der_pol",
         states=("x", "v"),
         parameters={"mu": 1.0},
         motion=lambda s, phase, p, contact: (s.v, p.mu * (1 - s.x**2) * s.v - s.x),
     )
-
-
-def test_a_machine_without_contacts_that_excites_itself():
-    found = van_der_pol().attractor({"x": 0.5})
+    found = machine.attractor({"x": 0.5})
     assert found.kind == "periodic" and found.text == ""
     # period of van der Pol's cycle at mu = 1, to its digits (Andersen and Geer, SIAM J. Appl. Math. 42 (1982) 678)
     assert found.orbit.period == pytest.approx(6.66328686, abs=1e-8)
@@ -95,18 +90,3 @@ def test_a_machine_without_contacts_that_excites_itself():
     graph = cv.diagram(found.orbit, over="mu", within=(0.5, 2.0))
     (branch,) = graph.branches.values()
     assert branch.measure("period")[0] == pytest.approx(branch.orbit(0).period)
-
-
-def test_a_machine_without_contacts_that_is_forced():
-    """A linear oscillator: amplitude g / sqrt((1 - w^2)^2 + (2 d w)^2)."""
-    machine = Machine(
-        name="linear",
-        states=("x", "v"),
-        parameters={"omega": 1.3, "g": 0.7, "damping": 0.1},
-        phase_rate="omega",
-        motion=lambda s, phase, p, contact: (s.v, -s.x - 2 * p.damping * s.v + p.g * cos(phase)),
-    )
-    orbit = machine.attractor().orbit
-    assert orbit.measure("max_x") == pytest.approx(0.7 / np.hypot(1 - 1.3**2, 2 * 0.1 * 1.3), rel=1e-9)
-    with pytest.raises(PageError, match="forced"):
-        machine.smooth()

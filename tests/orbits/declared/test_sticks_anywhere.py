@@ -1,16 +1,13 @@
 """Bodies that always stick, at any place of a band: each motion is followed where it lies, alone or beside a body that moves."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import contvines as cv
 from orbits import DryFriction, Machine
-from orbits.machines.page.loading import load_page
 from orbits.symbols import cos
+from tools.pages.pages import page
 
-EXAMPLES = Path(__file__).parents[3] / "examples" / "machines"
 FREQUENCY, DRAG, GRIP = 1.3, 0.3, 1.5
 
 PAIR = Machine(
@@ -48,8 +45,7 @@ def test_a_body_is_followed_where_it_lies_beside_one_that_moves(place: float) ->
 @pytest.mark.parametrize("place", [0.0, 0.1])
 def test_a_body_alone_is_followed_where_it_lies(place: float) -> None:
     """The spring takes `place` of the friction; it slips where the forcing takes the rest."""
-    machine = load_page(EXAMPLES / "den_hartog.py", "machine")
-    rest = machine.attractor({"x": place}, forcing=0.1).orbit
+    rest = page("den_hartog").attractor({"x": place}, forcing=0.1).orbit
     graph = cv.diagram(rest, over="forcing", within=(0.02, 0.6), depth=0)
     assert graph["ST1"].branch == "B1"
     assert abs(graph["ST1"].value - (0.3 - place)) < 1e-9

@@ -1,48 +1,64 @@
-"""A page with units is the page without them in SI numbers: the same motions, shown in other units."""
+"""A machine has the same branches in every unit: its motions are thousands of micrometres, or thousandths of a metre."""
 
-import numpy as np
+import math
+
 import pytest
+from scipy.optimize import brentq
 
-from orbits import Machine, Wall
+import contvines as cv
 from orbits.symbols import cos
+from tests.orbits.declared.oscillators import RIGHT, oscillator
 
 pytest.importorskip("pint")
-STATES = ("x", "v")
-SI = {
-    "stiffness": 900.0,
-    "force": 2.0,
-    "gap": 1.5e-3,
-    "frequency": 2 * np.pi * 5.5,
-    "damping": 4.0,
-    "restitution": 0.8,
-}
-SHOWN = SI | {"gap": "1.5 mm", "frequency": 5.5, "stiffness": "0.9 N/mm"}
-UNITS = {"x": "mm", "v": "mm/s", "gap": "mm", "frequency": "Hz", "stiffness": "N/m", "force": "N"}
+
+MASS, STIFFNESS, DAMPING, FORCE, GAP = 4.0, 16e3, 12.0, 40.0, 8e-3
+METRES = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
 
 
-def stop(parameters, units=None):
-    def motion(state, phase, p, contact):
-        x, v = state
-        return v, p.force * cos(phase) - p.stiffness * x - p.damping * v  # a mass of one kilogram
-
-    wall = Wall("R", lambda state, phase, p: p.gap - state.x, {"v": -1.0}, "restitution")
-    return Machine(
-        name="stop",
-        states=STATES,
-        parameters=parameters,
-        motion=motion,
-        contacts=[wall],
-        phase_rate="frequency",
-        units=units,
+def press(length, speed):
+    """A mass of 4 kg on a spring beside a wall at 8 mm, driven by 40 N."""
+    return oscillator(
+        lambda s, phase, p, contact: (FORCE * cos(phase) - DAMPING * s.v - STIFFNESS * s.x) / MASS,
+        RIGHT,
+        parameters={"gap": "0.8 cm", "frequency": "9 Hz", "restitution": 0.6},
+        units={"x": length, "v": speed, "gap": length, "frequency": "Hz"},
     )
 
 
-def test_motions_are_the_same_in_every_unit():
-    plain, shown = stop(SI).attractor().found, stop(SHOWN, UNITS).attractor().found
-    assert (
-        shown.word == plain.word and shown.impacts and shown.period == pytest.approx(plain.period, rel=1e-12)
-    )
-    assert shown.nodes == pytest.approx(plain.nodes * [1.0, 1e3, 1e3], abs=1e-9)
-    assert np.abs(shown.multipliers) == pytest.approx(np.abs(plain.multipliers), abs=1e-10)
-    assert shown.measure("max_x") == pytest.approx(1e3 * plain.measure("max_x"), rel=1e-12)
-    assert shown.model.units["max_x"] == "mm" and shown.model.units["frequency"] == "Hz"
+def size(hertz):
+    """Metres that it goes to either side without the wall."""
+    rate = 2.0 * math.pi * hertz
+    return FORCE / abs(STIFFNESS - MASS * rate**2 + 1j * DAMPING * rate)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("length", "speed"), [("m", "m/s"), ("mm", "mm/s"), ("mm", "m/s"), ("um", "um/s")])
+def test_the_branch_ends_where_the_linear_response_reaches_the_wall(length, speed):
+    start = press(length, speed).orbit("R", frequency=10.0)
+    graph = cv.diagram(start, over="frequency", within=(8.0, 11.5), depth=0)
+    assert set(graph.special) == {"WG1", "PD1", "EP1", "EP2"}
+    assert graph["WG1"].value == pytest.approx(brentq(lambda f: size(f) - GAP, 8.0, 10.0), rel=1e-9)
+    assert not graph.unresolved and len(graph["B1"]) < 500
+
+
+@pytest.mark.parametrize(("length", "speed"), [("m", "m/s"), ("mm", "mm/s")])
+def test_what_simulation_meets_lies_on_its_branch(length, speed):
+    """At 8.5 Hz, where all starts lead to two impacts in three periods, and far above the resonance, where few lead to the linear response and the
+    others to impacts."""
+
+    def met(at):
+        within = (at - 0.02, at + 0.02)
+        options = {"over": "frequency", "within": within, "values": [at], "starts": 32, "scan": 0, "depth": 0}
+        return cv.atlas(press(length, speed), **options)
+
+    (doubled,) = met(8.5).attractors
+    assert (doubled.word, doubled.periods, doubled.branch) == ("RR", 3, "B1")
+    atlas = met(12.5)
+    assert sorted((about.word, about.branch) for about in atlas.attractors) == [("", "B2"), ("R", "B1")]
+    orbit = atlas["B2"].orbit(1)
+    most = size(orbit.parameters["frequency"])
+    assert orbit.measure("max_x") == pytest.approx(most / METRES[length], rel=1e-9)
+    assert orbit.model.units["max_x"] == length
+    # it comes closest to the wall inside its flight
+    kept = min(margin.value for margin in orbit.margins if margin.kind == "wall")
+    assert kept == pytest.approx(GAP - most, rel=1e-8)

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contvines as cv
-from orbits import Machine, Wall
 from orbits.symbols import cos
+from tests.orbits.declared.oscillators import RIGHT, oscillator
 
 pytestmark = pytest.mark.slow
 
@@ -14,18 +14,10 @@ DAMPING, FREQUENCY = 0.15, 1.2
 PERIOD = 2.0 * np.pi / FREQUENCY
 
 
-def motion(state, phase, p, contact):
-    x, v = state
-    return v, p.forcing * cos(phase) - 2 * p.damping * v + x - p.cubic * x**3
-
-
-MACHINE = Machine(
-    name="double_well",
-    states=("x", "v"),
-    parameters={"forcing": 0.2, "frequency": FREQUENCY, "damping": DAMPING, "cubic": 1.0, "gap": 10.0},
-    phase_rate="frequency",
-    motion=motion,
-    contacts=[Wall("R", lambda state, phase, p: p.gap - state.x, {"v": -1.0}, 0.8)],
+MACHINE = oscillator(
+    lambda s, phase, p, contact: p.forcing * cos(phase) - 2 * DAMPING * s.v + s.x - s.x**3,
+    RIGHT,
+    parameters={"forcing": 0.2, "frequency": FREQUENCY, "gap": 10.0, "restitution": 0.8},
 )
 
 
@@ -60,7 +52,7 @@ def test_it_settles_on_the_cycle_that_another_integrator_settles_on(forcing):
 def test_what_does_not_return_is_no_rest():
     assert (
         MACHINE.attractor(forcing=0.3).kind == "aperiodic"
-    )  # a positive Lyapunov exponent, by other programs as well
+    )  # by other programs as well: a positive exponent
 
 
 def test_the_doubled_motion_is_followed():

@@ -1,68 +1,70 @@
-"""The bordered elimination of cycles against dense linear algebra, short and long, with one and the other closure."""
+"""Systems of cycles against dense linear algebra: bordered, short and long, transposed, and with one and the other closure."""
 
 import numpy as np
 import pytest
 
-from orbits.arguments import workspace
-from tests.orbits.elimination.closures import both_cores, closed_by, kernels_of
+from orbits.arguments import jacobian, workspace
+from tests.orbits.elimination.closures import both_cores, closed_by, drawn, kernels_of, turned, written_out
+
+pytestmark = [both_cores, pytest.mark.parametrize("twist", [1.0, -1.0])]
 
 
-def dense(work, twist, border):
-    """The bordered matrix [[J, F_p], [border]] written out."""
-    F, A, D, Q = work[:4]
-    length, n = F.shape
-    size = length * n
-    matrix = np.zeros((size + 1, size + 1))
-    for i in range(length):
-        rows, columns = slice(i * n, i * n + n), slice(i * n, i * n + n)
-        matrix[rows, columns] += A[i]
-        ahead = (i + 1) % length
-        closure = np.diag(np.r_[1.0, np.full(n - 1, twist)]) if i + 1 == length else np.eye(n)
-        matrix[rows, ahead * n : ahead * n + n] += D[i] @ closure
-    matrix[:size, size] = Q.ravel()
-    matrix[size] = border
-    return matrix
-
-
-@both_cores
 @pytest.mark.parametrize("node", [2, 3, 4])
-@pytest.mark.parametrize("twist", [1.0, -1.0])
 @pytest.mark.parametrize("length", [1, 2, 3, 10, 31, 32, 33, 47, 48, 63, 64, 100, 200])
-def test_against_dense_algebra(core, node, twist, length):
-    draw = np.random.default_rng(1000 * node + length)
-    work = workspace(length, node, 6)
-    for part in work[:4]:
-        part[...] = draw.normal(size=part.shape)
+def test_bordered_systems(core, node, twist, length):
+    work, draw = drawn(length, node, 1000 * node + length)
     size = node * length
-    border, step, tangent = draw.normal(size=size + 1), np.zeros(size + 1), np.zeros(size + 1)
-    sign = kernels_of(core).bordered(closed_by(twist), work, border, 0.7, step, tangent)
-    matrix = dense(work, twist, border)
+    border, found = draw.normal(size=size + 1), np.zeros((2, size + 1))
+    matrix = np.block([[written_out(*work[1:3], turned(node, twist)), work[3].reshape(-1, 1)], [border]])
+    sign = kernels_of(core).bordered(closed_by(twist), work, border, 0.7, *found)
+    exact = np.linalg.solve(matrix, np.column_stack([np.append(-work[0].ravel(), 0.7), np.eye(size + 1)[-1]]))
     tolerance = 1e-13 * np.linalg.cond(matrix)
-    for found, side in ((step, np.append(-work[0].ravel(), 0.7)), (tangent, np.append(np.zeros(size), 1.0))):
-        exact = np.linalg.solve(matrix, side)
-        assert np.abs(found - exact).max() <= tolerance * np.abs(exact).max()
+    assert np.all(np.abs(found - exact.T).max(axis=1) <= tolerance * np.abs(exact).max(axis=0))
     constant = -1.0 if core == "native" and node % 2 and length % 2 == 0 else 1.0
     assert sign == constant * np.linalg.slogdet(matrix)[0]
 
 
-@both_cores
+@pytest.mark.parametrize("node", [2, 4])
+@pytest.mark.parametrize("length", [1, 2, 5])
+def test_transposed_systems(core, node, twist, length):
+    work, draw = drawn(length, node, 10 * node + length)
+    data, size, other = closed_by(twist), node * length, workspace(length, node, 6)
+    matrix = written_out(*work[1:3], turned(node, twist))
+    np.testing.assert_allclose(jacobian(data, work), matrix, atol=1e-15)
+    b, c = draw.normal(size=(2, size))
+    kernels_of(core).transpose(data, work, c, other)
+    other[0][...] = 0.0
+    step, tangent = np.zeros((2, size + 1))
+    kernels_of(core).bordered(data, other, np.append(b, 0.0), 0.0, step, tangent)
+    whole = np.block([[matrix.T, c[:, None]], [b, np.zeros((1, 1))]])
+    exact = np.linalg.solve(whole, np.append(np.zeros(size), 1.0))
+    np.testing.assert_allclose(tangent, exact, atol=1e-12 * np.linalg.cond(whole) * np.abs(exact).max())
+
+
+@pytest.mark.parametrize("length", [1, 3])
+def test_the_closure_turned_round(core, twist, length):
+    """Perturbations that come back with the opposite sign, in all entries: x_L = -T x_0."""
+    work, _ = drawn(length, 2, length)
+    for sign in (-1.0, 1.0):
+        wanted = written_out(*work[1:3], -turned(2, twist))
+        kernels_of(core).flip(closed_by(twist), work, sign)
+        np.testing.assert_allclose(written_out(*work[1:3], turned(2, twist)), wanted, atol=1e-15)
+
+
 @pytest.mark.parametrize("length", [31, 1024])
-def test_unstable_cycles_lose_nothing(core, length):
+def test_unstable_cycles_lose_nothing(core, twist, length):
     """Saddles that stretch by 8 and shrink by 8 per node: forward products reach 1e3700, the elimination must not."""
-    draw = np.random.default_rng(length)
-    work = workspace(length, 2, 6)
+    work, draw = drawn(length, 2, length)
     F, A, D, Q = work[:4]
     angles = draw.uniform(0.0, 0.3, length + 1)
     turn = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]]).transpose(2, 0, 1)
     turn[length] = turn[0]
     A[...] = turn[1:] @ np.diag([8.0, 0.125]) @ turn[:-1].transpose(0, 2, 1)
     D[...] = -np.eye(2)
-    Q[...] = draw.normal(size=Q.shape)
-    F[...] = draw.normal(size=F.shape)
-    size = 2 * length
-    border, step, tangent = np.zeros(size + 1), np.zeros(size + 1), np.zeros(size + 1)
-    border[size] = 1.0
-    kernels_of(core).bordered(closed_by(1.0), work, border, 0.25, step, tangent)
-    x = step[:size].reshape(length, 2)
-    left = np.einsum("ijk,ik->ij", A, x) - np.roll(x, -1, axis=0) + 0.25 * Q + F
-    assert step[size] == pytest.approx(0.25, abs=1e-14) and np.abs(left).max() < 1e-13 * np.abs(x).max() * 8.0
+    border, (step, tangent) = np.eye(2 * length + 1)[-1], np.zeros((2, 2 * length + 1))
+    kernels_of(core).bordered(closed_by(twist), work, border, 0.25, step, tangent)
+    x = step[:-1].reshape(length, 2)
+    following = np.roll(x, -1, axis=0)
+    following[-1] *= turned(2, twist)
+    left = np.einsum("ijk,ik->ij", A, x) - following + 0.25 * Q + F
+    assert step[-1] == pytest.approx(0.25, abs=1e-14) and np.abs(left).max() < 1e-13 * np.abs(x).max() * 8.0

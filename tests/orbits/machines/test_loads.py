@@ -1,28 +1,21 @@
 """Loads at the walls against the momentum balance of the simulated motion, and in SI units against the formulas by hand."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from orbits import Absorber, Coupled, Machine, Wall
+from orbits import Absorber, Coupled, Machine
 from orbits.flows import machine_of
 from orbits.machines.measures import LOADS
-from orbits.machines.page.loading import load_page
-from orbits.machines.page.page import PageError
-from tests.machines import STRONG
+from tests.machines import ABSORBER, STRONG
+from tests.orbits.machines.coupled.bodies import nodes_of_bodies
+from tools.pages.pages import page
 
-R, EPS = 0.76, 0.006
-EXAMPLES = Path(__file__).parents[3] / "examples" / "machines"
-
-
-def motion_of(page):
-    return page.equations.formulas_of_motion
+R, EPS = STRONG["restitution"], STRONG["mass_ratio"]
 
 
 @pytest.fixture(scope="module")
 def orbit():
-    return Absorber(restitution=R, friction=0.5, gravity=0.211, mass_ratio=EPS).symmetric_orbit(amplitude=0.6)
+    return ABSORBER.symmetric_orbit(amplitude=0.6)
 
 
 def test_impulses_change_the_absorbers_momentum(orbit):
@@ -74,28 +67,15 @@ def test_half_sine_has_the_impulse(orbit):
 def test_a_page_with_its_energy_has_the_loads_of_the_machine():
     """The coupled machine as a declared one, the oscillator's mass 1: energies and impulses are mass_ratio times those per absorber's mass."""
     values = {**STRONG, "forcing": 2.47, "frequency": 1.01, "damping": 1.0}
-    page = load_page(EXAMPLES / "coupled.py", "machine")
+    declared = page("coupled")
     machine = Machine(
-        name="coupled_page", states=page.states, parameters=page.parameters | {"contact_time": 0.05}, motion=motion_of(page),
-        contacts=page.contacts, phase_rate="frequency", mirror={"L": "R"},
+        name="coupled_page", states=declared.states, parameters=declared.parameters | {"contact_time": 0.05},
+        motion=declared.equations.formulas_of_motion, contacts=declared.contacts, phase_rate="frequency", mirror={"L": "R"},
         energy=lambda x, phase, p: 0.5 * (x.v1**2 + p.mass_ratio * x.v2**2 + x.q1**2),
     )  # fmt: skip
-    known = Coupled(**STRONG, damping=1.0, forcing=2.47, frequency=1.01, contact_time=0.05).symmetric_orbit()
-    events, eps = known.events, STRONG["mass_ratio"]
-    both = known.model.bodies(
-        np.array([events.w, events.rate_post]), np.array([known.nodes[:, 2], known.nodes[:, 3]]), known.params
-    )
-    nodes = np.column_stack([known.nodes[:, 0], both[0][0], both[1][0], both[0][1], both[1][1]])
-    orbit = machine.orbit(known.word.text, 1, nodes, **values)
+    known = Coupled(**values, contact_time=0.05).symmetric_orbit()
+    orbit = machine.orbit(known.word.text, 1, nodes_of_bodies(known), **values)
     alike = {name: name for name in (*LOADS, "friction_loss", "work_rate") if not name.startswith("impulse_")}
     for name, same in (alike | {"impulse_L": "impulse_left", "impulse_R": "impulse_right"}).items():
-        scale = 1.0 if name == "impact_rate" else eps
+        scale = 1.0 if name == "impact_rate" else EPS
         np.testing.assert_allclose(orbit.measure(name), scale * known.measure(same), rtol=1e-8, err_msg=name)
-
-
-def test_an_energy_without_mass_is_refused():
-    with pytest.raises(PageError, match="moves a mass of 0"):
-        Machine(
-            name="ball", states=("y", "v"), parameters={"r": 0.8}, motion=lambda s, phase, p, c: (s.v, -1.0),
-            contacts=[Wall("B", lambda s, phase, p: s.y, {"v": 1.0}, "r")], energy=lambda s, phase, p: s.y,
-        )  # fmt: skip

@@ -1,10 +1,12 @@
 """The simulation of an inclined cavity with unlike walls and frictions, against a plain integration with event detection."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from orbits import Cavity
+from orbits.machines.reference.machine import reference
 from orbits.simulation import simulate
 from tests.orbits.simulation.plain_integration import events_of
 
@@ -25,5 +27,7 @@ def test_events_are_those_of_a_plain_integration():
         run = simulate(machine, dict(zip(("phase", "w", "w_rate"), start)), events=9, amplitude=amplitude)
         assert run.letters == "".join(event[0] for event in told)
         assert run.phases == pytest.approx([event[1] for event in told], abs=1e-9)
+        for stepper in (run.machine, reference("cavity")):
+            assert abs(replace(run, machine=stepper).balance().error) < 1e-11
         seen |= set(run.letters)
     assert seen == set("LRtsu")

@@ -6,50 +6,47 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Cavity, Coupled, DryFriction, Machine, Wall
+from orbits import Cavity, Coupled, DryFriction, Machine
 from orbits.problem import rebuild
 from orbits.symbols import cos, sin
+from tests.machines import STRONG
+from tools.pages.pages import page
 
-NUMBERS = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
+NUMBERS = STRONG | {"damping": 1.0}
 INCLINED = Coupled(forcing=2.47, slope=0.1, **NUMBERS)
 
 
-def page():
+def inclined_page():
     """The same machine by its equations of motion, with the oscillator counted from where it rests without its absorber."""
+    level = page("coupled")
 
     def motion(state, phase, p, contact):
-        q1, q2, v1, v2 = state
-        base = p.mass_ratio * p.forcing * (sin(phase) + p.mass_ratio * p.damping * p.frequency * cos(phase))
-        spring = q1 + p.mass_ratio * p.damping * v1
-        return v1, v2, base - spring + p.mass_ratio * contact.floor, p.gravity * sin(p.slope) - contact.floor
+        *others, last = level.equations.formulas_of_motion(state, phase, p, contact)
+        return *others, last + p.gravity * sin(p.slope)
 
-    def wall(letter, side):
-        push = {"v1": lambda state, phase, p: -side * p.mass_ratio, "v2": side}
-        return Wall(letter, lambda state, phase, p: 1 - side * (state.q1 - state.q2), push, "restitution")
+    def limit(state, phase, p):
+        return p.friction * p.gravity * cos(p.slope)
 
-    floor = DryFriction(
-        "floor", lambda s, phase, p: s.v1 - s.v2, lambda s, phase, p: p.friction * p.gravity * cos(p.slope)
-    )
     return Machine(
         name="inclined",
-        states=("q1", "q2", "v1", "v2"),
-        parameters={"forcing": 2.47, "frequency": 1.0, "slope": 0.1, **NUMBERS},
+        states=level.states,
+        parameters=level.parameters | {"slope": 0.1},
         phase_rate="frequency",
         motion=motion,
-        contacts=[wall("L", 1), wall("R", -1), floor],
+        contacts=[*level.contacts[:2], DryFriction("floor", lambda s, phase, p: s.v1 - s.v2, limit)],
     )
 
 
 def test_the_page_has_the_same_orbits_and_special_points():
     own = INCLINED.attractor({"q1": 1.0, "q2": 1.0}, frequency=0.985).orbit
     settings = {"over": "frequency", "within": (0.98, 0.992), "depth": 0}
-    there = page().orbit(own.spelling, own.periods, frequency=0.985)
+    there = inclined_page().orbit(own.spelling, own.periods, frequency=0.985)
     assert sorted(map(abs, there.multipliers)) == pytest.approx(sorted(map(abs, own.multipliers)), abs=1e-9)
     graphs = [cv.diagram(orbit, **settings) for orbit in (own, there)]
-    points = [sorted((p.kind, p.value) for p in graph.special.values()) for graph in graphs]
-    assert len(points[0]) == len(points[1]) > 1
-    for (kind, value), (other, elsewhere) in zip(*points):
-        assert kind == other and value == pytest.approx(elsewhere, abs=1e-10)
+    (kinds, values), (others, elsewhere) = (
+        zip(*sorted((p.kind, p.value) for p in graph.special.values())) for graph in graphs
+    )
+    assert kinds == others and len(kinds) > 1 and values == pytest.approx(elsewhere, abs=1e-10)
 
 
 def test_a_light_absorber_is_the_inclined_cavity():
@@ -65,9 +62,7 @@ def test_a_light_absorber_is_the_inclined_cavity():
     guess = np.column_stack([alone.nodes, 0.9 * np.sin(phase), 0.9 * omega * np.cos(phase)])
     orbit = light.orbit(alone.spelling, alone.periods, guess)
     assert np.abs(orbit.nodes[:, :2] - alone.nodes).max() < 1e-8
-    own = sorted((abs(m) for m in orbit.multipliers), key=lambda m: abs(m - 1.0))[
-        2:
-    ]  # the oscillator's are 1
+    own = sorted(map(abs, orbit.multipliers), key=lambda m: abs(m - 1.0))[2:]  # the oscillator's are 1
     assert sorted(own) == pytest.approx(sorted(map(abs, alone.multipliers)), abs=1e-7)
 
 

@@ -7,8 +7,10 @@ import pytest
 from scipy.io import savemat
 
 from orbits import Coupled, ParameterError, structure
+from orbits.design.page_transients import page_transient
 from orbits.problem import rebuild
 from tests.machines import STRONG
+from tests.orbits.machines.coupled.bodies import nodes_of_bodies
 
 
 def chain(n, damping=0.02):
@@ -19,14 +21,8 @@ def chain(n, damping=0.02):
 @pytest.mark.slow
 def test_a_long_chain_is_reduced_with_the_error_that_it_says():
     m, c, k = chain(40, damping=0.3)
-    machine = structure(
-        m,
-        c,
-        k,
-        forces=[{"at": 7, "amplitude": 1.0}],
-        walls=[{"at": 30, "gap": 1e6, "restitution": 0.7}],
-        frequency=0.11,
-    )
+    wall = {"at": 30, "gap": 1e6, "restitution": 0.7}
+    machine = structure(m, c, k, forces=[{"at": 7, "amplitude": 1.0}], walls=[wall], frequency=0.11)
     small = machine.reduction
     assert len(small.mass) < 20 and small.size == 40 and 0.0 < small.error <= 0.01
     worst = 0.0
@@ -53,12 +49,7 @@ def test_an_absorber_on_one_mass_is_the_coupled_machine():
         forces=[{"at": 1, "amplitude": eps * 2.47, "shift": -np.pi / 2}],
         absorbers=[{"at": 1, "mass": eps, "clearance": 1.0, "restitution": STRONG["restitution"], "friction": limit}],
     )  # fmt: skip
-    q = known.model.bodies(
-        np.array([known.events.w, known.events.rate_post]),
-        np.array([known.nodes[:, 2], known.nodes[:, 3]]),
-        known.params,
-    )
-    nodes = np.column_stack([known.nodes[:, 0], q[0][0], q[1][0], q[0][1], q[1][1]])
+    nodes = nodes_of_bodies(known)
     orbit = machine.orbit("L1 R1", 1, nodes)
     np.testing.assert_allclose(orbit.nodes, nodes, atol=1e-9)
     np.testing.assert_allclose(
@@ -67,21 +58,29 @@ def test_an_absorber_on_one_mass_is_the_coupled_machine():
     assert orbit.measure("impulse") == pytest.approx(eps * known.measure("impulse"), rel=1e-8)
 
 
+def moving(walls, start, time, limit=0.0, forces=(), size=1):
+    """A motion from a start, without damping."""
+    m, _, k = chain(size) if size > 1 else (np.eye(1), None, np.eye(1))
+    frictions = [{"at": 1, "to": 2, "limit": limit}] if limit else []
+    machine = structure(m, 0.0 * m, k, walls=walls, frictions=frictions, forces=[*forces])
+    return page_transient(machine, machine.vector(), start, time=time)
+
+
 def test_contacts_between_degrees_of_freedom_and_their_balance():
     """A rigid wall and dry friction between two masses, unforced: what they take is what the energy loses."""
-    from orbits.design.page_transients import page_transient
-
-    m, _, k = chain(2)
-    machine = structure(
-        m,
-        np.zeros((2, 2)),
-        k,
-        walls=[{"at": 1, "to": 2, "gap": 0.1, "restitution": 0.8}],
-        frictions=[{"at": 1, "to": 2, "limit": 0.02}],
-    )
-    seen = page_transient(machine, machine.vector(), {"x1": 0.0, "x2": 1.0}, time=12.0)
+    wall = {"at": 1, "to": 2, "gap": 0.1, "restitution": 0.8}
+    seen = moving([wall], {"x1": 0.0, "x2": 1.0}, 12.0, limit=0.02, size=2)
     assert seen.impact_times.size > 2
     assert seen.impacts[-1] + seen.friction[-1] == pytest.approx(seen.energy[0] - seen.energy[-1], rel=1e-9)
+
+
+def test_an_elastic_wall_stores_what_the_masses_lose():
+    """Without damping the energy stays; at the turning point 1/2 k (x - gap)^2 + 1/2 x^2 is that of the start."""
+    wall = {"at": 1, "gap": 0.5, "stiffness": 9.0}
+    run = moving([wall], {"x1": 0.0, "v1": 1.0}, 20.0, forces=[{"at": 1, "amplitude": 0.0}])
+    assert run.energy == pytest.approx(np.full(len(run.times), 0.5), rel=1e-9)
+    # 9/2 (x - 1/2)^2 + x^2/2 = 1/2 at the turn: 10 x^2 - 9 x + 5/4 = 0
+    assert run.states["x1"].max() == pytest.approx((9.0 + np.sqrt(81.0 - 50.0)) / 20.0, rel=1e-3)
 
 
 def test_files(tmp_path):
@@ -102,57 +101,32 @@ def test_files(tmp_path):
     assert rebuild(problem.describe()).model.settings() == first.settings()
 
 
-FORCE = [{"at": 1, "amplitude": 1.0}]
 ONE = [[1.0]]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "options", "says"),
-    [
-        (([[1.0, 2.0]], ONE, ONE), {}, "its shape is"),
-        (([[0.0]], ONE, ONE), {"forces": FORCE}, "not positive definite"),
-        ((np.eye(2), np.eye(2), [[1.0, 2.0], [0.0, 1.0]]), {}, "not symmetric"),
-        ((np.eye(2), ONE, np.eye(2)), {}, "has 1 degrees of freedom, mass has 2"),
-        ((ONE, ONE, "nowhere.csv"), {}, "cannot be read"),
-        ((ONE, ONE, ONE), {}, "without forces and contacts"),
-        (
-            (ONE, ONE, ONE),
-            {"forces": [{"at": 2, "amplitude": 1.0}]},
-            "at = 2 is no degree of freedom; expected 1 to 1",
-        ),
-        ((ONE, ONE, ONE), {"forces": [{"at": 1}]}, "amplitude is missing"),
-        ((ONE, ONE, ONE), {"forces": [{"at": 1, "amplitud": 1.0}]}, "did you mean 'amplitude'"),
-        ((ONE, ONE, ONE), {"walls": [{"at": 1, "gap": 1.0}]}, "restitution, of a rigid wall, or stiffness"),
-        (
-            (ONE, ONE, ONE),
-            {"walls": [{"at": 1, "to": 1, "gap": 1.0, "stiffness": 1.0}]},
-            "at and to are both 1",
-        ),
-        (
-            (ONE, ONE, ONE),
-            {"walls": [{"at": 1, "gap": 1.0, "stiffness": -1.0}]},
-            "stiffness = -1 is out of range",
-        ),
-    ],
-)
-def test_what_is_no_structure_is_refused(arguments, options, says):
+def refused(matrices=(ONE, ONE, ONE), **contacts):
+    """What a structure is made of: matrices, and one entry of each list."""
+    return matrices, {name: [entry] for name, entry in contacts.items()}
+
+
+REFUSED = {
+    "its shape is": refused(([[1.0, 2.0]], ONE, ONE)),
+    "not positive definite": refused(([[0.0]], ONE, ONE), forces={"at": 1, "amplitude": 1.0}),
+    "not symmetric": refused((np.eye(2), np.eye(2), [[1.0, 2.0], [0.0, 1.0]])),
+    "has 1 degrees of freedom, mass has 2": refused((np.eye(2), ONE, np.eye(2))),
+    "cannot be read": refused((ONE, ONE, "nowhere.csv")),
+    "without forces and contacts": refused(),
+    "at = 2 is no degree of freedom; expected 1 to 1": refused(forces={"at": 2, "amplitude": 1.0}),
+    "amplitude is missing": refused(forces={"at": 1}),
+    "did you mean 'amplitude'": refused(forces={"at": 1, "amplitud": 1.0}),
+    "restitution, of a rigid wall, or stiffness": refused(walls={"at": 1, "gap": 1.0}),
+    "at and to are both 1": refused(walls={"at": 1, "to": 1, "gap": 1.0, "stiffness": 1.0}),
+    "stiffness = -1 is out of range": refused(walls={"at": 1, "gap": 1.0, "stiffness": -1.0}),
+}
+
+
+@pytest.mark.parametrize("says", REFUSED)
+def test_what_is_no_structure_is_refused(says):
+    matrices, contacts = REFUSED[says]
     with pytest.raises(ParameterError, match=says):
-        structure(*arguments, **options)
-
-
-def test_an_elastic_wall_stores_what_the_masses_lose():
-    """Without damping the energy stays; at the turning point 1/2 k (x - gap)^2 + 1/2 x^2 is that of the start."""
-    from orbits.design.page_transients import page_transient
-
-    machine = structure(
-        [[1.0]],
-        [[0.0]],
-        [[1.0]],
-        forces=[{"at": 1, "amplitude": 0.0}],
-        walls=[{"at": 1, "gap": 0.5, "stiffness": 9.0}],
-    )
-    run = page_transient(machine, machine.vector(), {"x1": 0.0, "v1": 1.0}, time=20.0)
-    assert run.energy == pytest.approx(np.full(len(run.times), 0.5), rel=1e-9)
-    # 9/2 (x - 1/2)^2 + x^2/2 = 1/2 at the turn: 10 x^2 - 9 x + 5/4 = 0
-    turn = (9.0 + np.sqrt(81.0 - 50.0)) / 20.0
-    assert run.states["x1"].max() == pytest.approx(turn, rel=1e-3)
+        structure(*matrices, **contacts)
