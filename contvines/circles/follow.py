@@ -147,19 +147,19 @@ def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> 
     start = curve.points[0] + CIRCLES.displaced * (curve.points[0] - centre)
     distances = _displacements(here, curve, birth, centre, start)
     logs = np.empty(0)
-    asked = int(min(count, max(LOOK, ROUNDS / _slowest(curve.rotation))))
+    returns = int(min(count, max(LOOK, ROUNDS / _slowest(curve.rotation))))
     while True:
-        logs = np.append(logs, np.abs(list(islice(distances, asked - len(logs)))))
-        if len(logs) < asked:
+        logs = np.append(logs, np.abs(list(islice(distances, returns - len(logs)))))
+        if len(logs) < returns:
             return False
-        if asked == count:
+        if returns == count:
             part = max(20, count // 10)
             share = float(np.mean(logs[-part:]) / np.mean(logs[:part]))
             return True if share < 0.8 else False if share > 1.25 else None
-        share = float(logs[asked // 2 :].max() / logs[: asked // 2].max())
+        share = float(logs[returns // 2 :].max() / logs[: returns // 2].max())
         if not 1.0 / CLEAR < share < CLEAR:
             return share < 1.0
-        asked = min(2 * asked, count)
+        returns = min(2 * returns, count)
 
 
 def _returns(here: Section, most: int) -> int:
@@ -176,14 +176,14 @@ def _slowest(rotation: float) -> float:
 def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float) -> float | None:
     """Rotation number of a simulation on the circle; None if it leaves the circle."""
     most = _returns(here, RETURNS)
-    x, z, asked = curve.points[0], np.empty(most, dtype=complex), FIRST
+    x, z, returns = curve.points[0], np.empty(most, dtype=complex), FIRST
     outline = curve.at(np.linspace(0.0, 2.0 * np.pi, 721))
     for i in range(most):
         x = here.step(x)
         z[i] = (x - centre) @ birth.frame.left.conj()
-        if i + 1 < min(asked, most):
+        if i + 1 < min(returns, most):
             continue
-        asked *= 2
+        returns *= 2
         if not np.isfinite(z[: i + 1]).all():
             return None
         if np.sqrt(((outline - x) ** 2).sum(axis=1).min()) > 0.02 * radius:
@@ -203,8 +203,8 @@ def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birt
     far = CIRCLES.far * birth.frame.size
     same = CIRCLES.same * birth.frame.size
     patience = _returns(here, PATIENCE)
-    for asked in (patience // 20, patience // 4, patience):
-        for _ in range(asked):
+    for returns in (patience // 20, patience // 4, patience):
+        for _ in range(returns):
             x = here.step(x)
             if not np.linalg.norm(x) < far:
                 return {"value": value, "kind": "leaves"}

@@ -53,21 +53,21 @@ class AtPoints:
         """
         return (self._together if self.many else self._each)(x, parameters, t)
 
-    def _asked(self, x: np.ndarray, parameters: Parameters | complex, t: object) -> object:
+    def _call(self, x: np.ndarray, parameters: Parameters | complex, t: object) -> object:
         return self.f(x, parameters, t) if self.forced else self.f(x, parameters)
 
     def _each(
         self, x: np.ndarray, parameters: Parameters | complex, t: Sequence | np.ndarray | None
     ) -> np.ndarray:
         times = [None] * len(x) if t is None else t
-        found = [_full(self._asked(y.copy(), parameters, s)) for y, s in zip(x, times, strict=True)]
+        found = [_full(self._call(y.copy(), parameters, s)) for y, s in zip(x, times, strict=True)]
         for value in found:
             if value.shape != self.shape:
                 raise NotEvaluable(f"the right-hand side has shape {value.shape}; {self.shape} is needed")
         return np.array(found)
 
     def _together(self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None) -> np.ndarray:
-        return _stacked(self._asked(x.T.copy(), parameters, t), len(x), self.shape)
+        return _stacked(self._call(x.T.copy(), parameters, t), len(x), self.shape)
 
     def find(
         self, agree: float, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None

@@ -146,14 +146,14 @@ class Field:
         NotEvaluable
             If f fails, does not return d numbers, or returns complex numbers for real arguments.
         """
-        found = self._asked(self._rates, x, p, t)
+        found = self._evaluated(self._rates, x, p, t)
         if found.dtype.kind == "c" and x.dtype.kind != "c" and not isinstance(p, complex):
             if np.imag(found).any():
                 raise NotEvaluable("the right-hand side returns complex numbers")
             return np.real(found)
         return found
 
-    def _asked(self, function: AtPoints, x: np.ndarray, p: complex, t: np.ndarray | None) -> np.ndarray:
+    def _evaluated(self, function: AtPoints, x: np.ndarray, p: complex, t: np.ndarray | None) -> np.ndarray:
         try:
             return function(x, self.values.at(p), t)
         except NotEvaluable:
@@ -186,7 +186,7 @@ class Field:
         def jacobian(x: np.ndarray) -> Any:
             if given is None:
                 return self.jacobian(x[None, :], p, t)[0]
-            return given._asked(x, parameters, None if t is None else t[0])
+            return given._call(x, parameters, None if t is None else t[0])
 
         try:
             with np.errstate(all="ignore"):
@@ -211,7 +211,7 @@ class Field:
         if given is not None:
             parameters = self.values.at(p)
             for i, y in enumerate(x):
-                value = given._asked(y, parameters, None if t is None else t[i])
+                value = given._call(y, parameters, None if t is None else t[i])
                 value = value.tocsr() if issparse(value) else np.asarray(value)  # type: ignore[attr-defined]
                 found[i] = np.asarray(value[pattern.indices, pattern.columns]).reshape(-1)
             return found
@@ -224,7 +224,7 @@ class Field:
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """Return df/dx at the points, shape (n, d, d)."""
         if self._matrices is not None:
-            return self._asked(self._matrices, x, p, t)
+            return self._evaluated(self._matrices, x, p, t)
         found = np.ascontiguousarray(self._along(np.eye(self.node), x, p, t).transpose(1, 2, 0))
         return found if self.complex_step else found / self.lengths
 
@@ -303,7 +303,7 @@ class Field:
         if name not in self._slopes:
             self._slopes[name] = AtPoints(given, self.forced, (self.node,))
         self._slopes[name].find(self.settings.agree, x, self.values.at(p), t)
-        return self._asked(self._slopes[name], x, p, t)
+        return self._evaluated(self._slopes[name], x, p, t)
 
 
 def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
@@ -427,7 +427,7 @@ class Events:
 
         def stopping(sign: float, function: AtPoints) -> Callable:
             def value(t: float, x: np.ndarray) -> float:
-                return sign * float(function._asked(x, parameters, t))  # type: ignore[arg-type]
+                return sign * float(function._call(x, parameters, t))  # type: ignore[arg-type]
 
             value.terminal, value.direction = True, -1.0  # pyright: ignore[reportFunctionMemberAccess]
             return value

@@ -67,10 +67,10 @@ def flip(data: CycleMesh, work: CycleWork, sign: float) -> None:
     if not data.free_period:
         return
     if sign < 0.0:
-        work.kept = work.by_period.copy(), work.phase.copy()
+        work.saved = work.by_period.copy(), work.phase.copy()
         work.by_period[:], work.phase[:] = 0.0, 0.0
     else:
-        work.by_period[:], work.phase[:] = work.kept
+        work.by_period[:], work.phase[:] = work.saved
     work.corner = 1.0 if sign < 0.0 else 0.0
 
 

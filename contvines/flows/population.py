@@ -32,9 +32,9 @@ PER_PERIOD = 30  # integrator steps that count as one period in the budget of an
 LONGEST = 16  # most returns, or forcing periods, of a cycle; a longer motion counts as irregular
 DOUBLINGS = 4  # doublings of the transient when a single motion is simulated until it recurs
 BRIEF = (3, 12)  # parameter values, and starts at each, of a brief search
-TRIED = (4, 2, 2)  # most failures to recognise a motion in each round
+FAILURES = (4, 2, 2)  # most failures to recognise a motion in each round
 # most solutions that turn out to be known in each round; later rounds see the starts nearer to them
-AGAIN = (2, 4, np.inf)
+REPEATS = (2, 4, np.inf)
 GROWTH = 4000  # time over which the growth of perturbations is averaged, in time scales of the motion
 BLOCKS = 20  # parts of that time, whose scatter gives the error of the mean
 FEW = 8  # fewest motions in that average; if there are fewer, copies of them are added
@@ -285,7 +285,7 @@ class Settling:
     def go(self, period: float | None) -> None:
         """Integrate until all starts are recognised or all rounds are over; forced flows in whole periods."""
         march, far, rounds = self.march, self.population.field.settings.far, 0
-        for steps, periods, most, again in zip(STEPS, PERIODS, TRIED, AGAIN, strict=True):
+        for steps, periods, most, repeats in zip(STEPS, PERIODS, FAILURES, REPEATS, strict=True):
             ways: dict[int, list[Place]] = {int(i): [] for i in self.left[:most]}
             for _ in range(steps if period is None else periods):
                 left = self.left
@@ -301,7 +301,7 @@ class Settling:
                     self._assign(k)
                 if not self.left.size:
                     return
-            self._recognise(ways, most, again)
+            self._recognise(ways, most, repeats)
         left = self.left
         if left.size:
             self._add(self.population.irregular(march.x[left[:BLOCKS]], self.p), left)
@@ -324,10 +324,10 @@ class Settling:
                 near = left[self.population.on(x[left], curve, motion.size)]
                 self.index[near], self.mirrored[near] = k, mirrored
 
-    def _recognise(self, ways: Mapping[int, Sequence[Place]], most: int, again: float) -> None:
-        """Solve for the motions near states that are not yet recognised, up to `most` failures and `again` known motions."""
+    def _recognise(self, ways: Mapping[int, Sequence[Place]], most: int, repeats: float) -> None:
+        """Solve for the motions near states that are not yet recognised, up to `most` failures and `repeats` known motions."""
         tried: list[int] = []
-        while len(tried) < most and again > 0:
+        while len(tried) < most and repeats > 0:
             i = next((int(i) for i in self.left if i not in tried), None)
             if i is None:
                 return
@@ -342,7 +342,7 @@ class Settling:
                     k = len(self.motions)
                     self.motions.append(motion)
                 else:
-                    again -= 1
+                    repeats -= 1
                 self.index[i], self.mirrored[i] = (
                     k,
                     not self._along(motion, self.motions[k].curve, self.motions[k].size),

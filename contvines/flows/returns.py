@@ -255,18 +255,18 @@ class FlowSection:
         problem, d = returns.problem, returns.node
         self.free = bool(problem.free_period)
         # states that are coordinates; matrix from these to all states
-        self.kept, self.chart = np.arange(d), np.eye(d)
+        self.columns, self.chart = np.arange(d), np.eye(d)
         if self.free:
             steep = int(np.argmax(np.abs(returns.normal * returns.scale)))
-            self.kept = np.delete(self.kept, steep)
+            self.columns = np.delete(self.columns, steep)
             self.chart = np.zeros((d, d - 1))
-            self.chart[self.kept, np.arange(d - 1)] = 1.0
-            self.chart[steep] = -returns.normal[self.kept] / returns.normal[steep]
-        self.names = tuple(problem.flow.states[j] for j in self.kept)
+            self.chart[self.columns, np.arange(d - 1)] = 1.0
+            self.chart[steep] = -returns.normal[self.columns] / returns.normal[steep]
+        self.names = tuple(problem.flow.states[j] for j in self.columns)
 
     def _states(self, x: np.ndarray) -> np.ndarray:
         start = self.returns.start
-        return start + (x - start[self.kept]) @ self.chart.T
+        return start + (x - start[self.columns]) @ self.chart.T
 
     def length(self, direction: np.ndarray) -> float:
         """Return the length of a direction for normal forms of cycles: the norm over all states."""
@@ -291,7 +291,7 @@ class FlowSection:
             place += change
             if abs(change) < SOLVED:
                 break
-        return mesh.evaluate(problem.rule, widths, x, np.array([place]))[:, self.kept]
+        return mesh.evaluate(problem.rule, widths, x, np.array([place]))[:, self.columns]
 
     def step(self, x: np.ndarray) -> np.ndarray:
         """Return the next point by simulation; NaN if the motion does not return."""
@@ -300,7 +300,7 @@ class FlowSection:
         r, field, start = self.returns, self.returns.field, self._states(np.asarray(x, dtype=float))
         s = field.settings
         options: dict[str, Any] = {"method": "DOP853", "rtol": s.relative, "atol": s.absolute * r.scale}
-        rate, lost = field.rate_at(self.p), np.full(len(self.kept), np.nan)
+        rate, lost = field.rate_at(self.p), np.full(len(self.columns), np.nan)
         if not np.isfinite(start).all():
             return lost
         if not self.free:
@@ -316,12 +316,12 @@ class FlowSection:
         if not half.success:
             return lost
         found = solve_ivp(rate, (half.t[-1], LATEST * r.period), half.y[:, -1], events=height, **options)
-        return found.y_events[0][0][self.kept] if found.status == 1 else lost
+        return found.y_events[0][0][self.columns] if found.status == 1 else lost
 
     def images(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the next points (n, k), their derivatives by the points, (n, k, k), and by the parameter, (n, k)."""
         r = self.returns
         found, by_state, by_value = r.varied(r.coordinates(self._states(points)), self.p)
-        out, into = r.basis[self.kept], r.inverse @ self.chart
+        out, into = r.basis[self.columns], r.inverse @ self.chart
         slopes = np.einsum("ka,nab,bl->nkl", out, by_state, into)
-        return r.states(found)[:, self.kept], slopes, by_value @ out.T
+        return r.states(found)[:, self.columns], slopes, by_value @ out.T

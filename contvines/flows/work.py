@@ -53,7 +53,7 @@ class CycleWork:
         nothing = np.zeros(0)
         self.along: tuple[np.ndarray, float, np.ndarray, np.ndarray] = nothing, math.nan, nothing, nothing
         # by_period and phase, while the closure is changed to x_N = -x_0
-        self.kept: tuple[np.ndarray, np.ndarray] = nothing, nothing
+        self.saved: tuple[np.ndarray, np.ndarray] = nothing, nothing
         self.begin()
 
     def begin(self) -> None:
@@ -313,7 +313,7 @@ class CoreRates:
     """A compiled right-hand side of an autonomous flow, with all its derivatives, at n Gauss points of d states, with q parameters."""
 
     def __init__(self, compiled: CompiledRates, q: int, n: int, d: int) -> None:
-        self.kept = compiled
+        self.compiled = compiled
         self.parameters, self.f, self.jacobian = np.empty(q), np.empty((n, d)), np.empty((n, d, d))
         self.slopes, self.slope = np.empty((n, d, q)), np.empty((n, d))
         arrays = self.parameters, self.f, self.jacobian, self.slopes, self.slope

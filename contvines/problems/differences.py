@@ -132,18 +132,18 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
     """
     with np.errstate(all="ignore"):
         here = f(0.0)
-        felt = 30.0 * np.broadcast_to(noise, here.shape)
-        floor = DERIVATIVES.cancelled * EPSILON * np.abs(here) + felt
+        noticeable = 30.0 * np.broadcast_to(noise, here.shape)
+        floor = DERIVATIVES.cancelled * EPSILON * np.abs(here) + noticeable
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
         beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
             ASIDE * lengths[:, None]
         )
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
-        seen = np.abs(odd) > floor + DERIVATIVES.cancelled * EPSILON * np.fmin.reduce(np.abs(odd), axis=0)
+        reliable = np.abs(odd) > floor + DERIVATIVES.cancelled * EPSILON * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
         # slopes at t and at ASIDE t differ where f is a staircase of rounding, or another power of t
-        seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
+        reliable &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
         found, many = np.inf, odd.shape[1] > MANY
         for r in range(odd.shape[1]):
             # of many rows, one within the same factor of the best is not examined: each costs evaluations of all rows
@@ -152,10 +152,10 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
             found = min(
                 found,
                 _bend_of_row(
-                    f, r, there, lengths, slope[:, r], even[:, r], seen[:, r], least, float(felt[r])
+                    f, r, there, lengths, slope[:, r], even[:, r], reliable[:, r], least, float(noticeable[r])
                 ),
             )
-        if not np.isfinite(found) and not seen.any():
+        if not np.isfinite(found) and not reliable.any():
             found = _end_of_square(f, lengths, even, floor)
     return float(found) if np.isfinite(found) else None
 
@@ -165,11 +165,11 @@ def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.nda
     curvature = even / lengths[:, None] ** 2
     beside = np.array([0.5 * (f(ASIDE * t) + f(-ASIDE * t)) for t in lengths]) - f(0.0)
     beside /= (ASIDE * lengths[:, None]) ** 2
-    seen = (np.abs(even) > floor) & (np.abs(curvature - beside) <= 0.05 * np.abs(curvature))
+    reliable = (np.abs(even) > floor) & (np.abs(curvature - beside) <= 0.05 * np.abs(curvature))
     found = np.inf
     for r in range(even.shape[1]):
-        k = int(np.argmax(seen[:, r]))
-        if seen[k, r]:
+        k = int(np.argmax(reliable[:, r]))
+        if reliable[k, r]:
             ends = np.abs(curvature[:, r] - curvature[k, r]) > 0.5 * abs(curvature[k, r])
             ends = (ends | ~np.isfinite(curvature[:, r])) & (np.arange(len(lengths)) > k)
             if ends.any():
@@ -184,14 +184,14 @@ def _bend_of_row(
     lengths: np.ndarray,
     slope: np.ndarray,
     even: np.ndarray,
-    seen: np.ndarray,
+    reliable: np.ndarray,
     least: float,
-    felt: float,
+    noticeable: float,
 ) -> float:
     """Length over which row r is nonlinear; infinity if it is linear, or if the length is above `least`."""
     k = 0
     finite = np.isfinite(slope) & np.isfinite(even)
-    for first in np.flatnonzero(seen):
+    for first in np.flatnonzero(reliable):
         if first < k:
             continue
         reference = float(slope[first])
@@ -210,7 +210,7 @@ def _bend_of_row(
                 abs(0.5 * (ahead - back) / middle - reference) + abs(0.5 * (ahead + back) - here) / middle
             )
             low, high = (middle, high) if change <= 0.5 * abs(reference) else (low, middle)
-        if _continuous(f, high, r, felt):
+        if _continuous(f, high, r, noticeable):
             return high
     return np.inf
 
@@ -280,10 +280,10 @@ def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     return np.median(estimates, axis=0), still
 
 
-def _continuous(f: Line, t: float, r: int, felt: float) -> bool:
+def _continuous(f: Line, t: float, r: int, noticeable: float) -> bool:
     """Whether entry r of f is continuous near t and near -t, and no staircase of rounding of terms that cancel.
 
-    Jumps up to `felt` are known noise and ignored.
+    Jumps up to `noticeable` are known noise and ignored.
     """
     for side in (t, -t):
         places = side * np.linspace(0.3, 1.2, 10)
@@ -300,7 +300,7 @@ def _continuous(f: Line, t: float, r: int, felt: float) -> bool:
                 high, after = middle, value
             else:
                 low, before = middle, value
-        if abs(after - before) > 0.05 * whole + felt:
+        if abs(after - before) > 0.05 * whole + noticeable:
             return False
     return True
 
@@ -330,10 +330,10 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float) -> float | N
 
         for t in guess * FACTOR ** np.arange(-REACH, REACH + 1.0):
             mixed, floor = both(t)
-            seen = plain & (mixed > floor) & np.isfinite(mixed)
-            if seen.any():
+            reliable = plain & (mixed > floor) & np.isfinite(mixed)
+            if reliable.any():
                 # where large terms of this unknown cancel in a row, rounding absorbs the effect of the other one
-                seen &= np.abs(both(ASIDE * t)[0] / ASIDE - mixed) <= 0.05 * mixed
-            if seen.any():
-                return float(t * (direct[seen] / mixed[seen]).min())
+                reliable &= np.abs(both(ASIDE * t)[0] / ASIDE - mixed) <= 0.05 * mixed
+            if reliable.any():
+                return float(t * (direct[reliable] / mixed[reliable]).min())
     return None

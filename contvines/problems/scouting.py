@@ -357,15 +357,15 @@ class Scout:
         rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
         for j, reach in lost.items():
             moved[j], rest[j] = False, first[j] if sure[j] else reach
-        seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
-        own = np.maximum(np.where(moved, seen, rest), SCALES.barely * size)
+        learned = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
+        own = np.maximum(np.where(moved, learned, rest), SCALES.barely * size)
         far = (extent[:-1] > SCALES.moves * size) | (np.where(bends, extent[:-1], 0.0) > first)
         travelled = bool(np.any(far)) or bool(extent[-1] > SCALES.travelled * self.width)
         if not travelled:  # nothing was learned: use the unknowns' own sizes, and the whole interval
             own = np.where(size > 0.0, size, 1.0)
         unknowns = in_fields(own) if given is None else given
-        seen_unit = min(self.width, 2.0 * extent[-1])
-        unit = float(seen_unit) if travelled and extent[-1] > 0.0 else self.width
+        unit_learned = min(self.width, 2.0 * extent[-1])
+        unit = float(unit_learned) if travelled and extent[-1] > 0.0 else self.width
         rows = np.where(self.rows > 0.0, self.rows, 1.0)
         rate = float(np.exp(np.mean(np.log(self.rates)))) if self.rates else 1.0
         untold = np.flatnonzero(~sure & ~moved & (size == 0.0)) if given is None else ()

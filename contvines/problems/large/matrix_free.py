@@ -56,7 +56,7 @@ def restarted(
     if size == 0.0:
         return np.zeros(n), 0.0
     matrix = LinearOperator((n, n), matvec=apply, dtype=float)  # type: ignore[call-arg]
-    kept = n if n <= ALL else RESTART
+    restart = n if n <= ALL else RESTART
     x = np.zeros(n) if guess is None else guess.copy()
     rest = side if guess is None else side - apply(x)
     gap = float(np.linalg.norm(rest)) / size
@@ -66,7 +66,7 @@ def restarted(
     for _ in range(CYCLES):
         if gap <= accuracy:
             break
-        step, missed = gmres(matrix, rest, rtol=accuracy / gap, atol=0.0, restart=kept, maxiter=1)
+        step, missed = gmres(matrix, rest, rtol=accuracy / gap, atol=0.0, restart=restart, maxiter=1)
         trial = x + step
         rest_of_it = side - apply(trial)
         found = float(np.linalg.norm(rest_of_it)) / size
