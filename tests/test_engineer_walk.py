@@ -39,21 +39,16 @@ def test_the_commands_and_the_snippet_of_the_page_run(tmp_path, monkeypatch, cap
     monkeypatch.chdir(tmp_path)
     place = tmp_path / "examples" / "design" / "machine.toml"
     place.parent.mkdir(parents=True)
-    small = STUDY.replace(
-        "[survey] ", '[survey]\nsamples = 1\nvary.half_width = { within = ["70 mm", "100 mm"], count = 5 }\n'
-    )
-    place.write_text(
-        small.replace('within = ["7 Hz", "9 Hz"]', 'within = ["7.8 Hz", "8.2 Hz"]').replace(
-            "depth = 1", "depth = 0"
-        )
-    )
-    lines = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
-    assert [shlex.split(line)[1] for line in lines] == ["diagram", "recommend", "report"]
-    for line in lines:
-        words = shlex.split(line)[1:]
+    vary = 'samples = 1\nvary.half_width = { within = ["70 mm", "100 mm"], count = 5 }\n'
+    small = STUDY.replace("[survey] ", "[survey]\n" + vary).replace("depth = 1", "depth = 0")
+    place.write_text(small.replace('within = ["7 Hz", "9 Hz"]', 'within = ["7.8 Hz", "8.2 Hz"]'))
+    lines = "".join(re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL)).splitlines()
+    lines = [shlex.split(line)[1:] for line in lines]
+    assert [words[0] for words in lines] == ["diagram", "recommend", "report"]
+    for words in lines:
         with pytest.raises(SystemExit) as ended:
             main(words)
-        assert ended.value.code == 0, line
+        assert ended.value.code == 0, words
     for picture in ("response.png", "choice.png", "machine.html"):
         assert (tmp_path / picture).exists()
     names: dict = {}
