@@ -142,6 +142,8 @@ REQUESTS = {
     "diagram friction.toml -o x.txt": "x.txt: this is not a .vines file by its name; use -o x.vines",
     "diagram friction.toml -o -": "-: results are kept in files",
     "rerun g.vines": "keeps no study to run again, as it was saved from Python (graph.save): the script that made it",
+    "report g.vines -o a.png": "must end in .html",
+    "report g.vines -o none/a.html": "there is no folder",
     "new foo": "contvines: foo: there is no such choice; choose one of absorber, coupled, cavity, si, machine, flow.",
     "new flow": "flow.py: this file is there already",
     "prove g.vines XX": "no label",

@@ -1,6 +1,7 @@
 """The report in a real browser: it draws, answers clicks and keys, moves, complains of nothing and asks nobody."""
 
 import shutil
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from contvines.loci.regions import Region
 from contvines.report.page import write_report
 from contvines.survey import Survey, planned
 from tests.machines import ABSORBER
+from tools.pages.pages import page as machine_file
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 QUIET = [
@@ -28,11 +30,68 @@ QUIET = [
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")]
 
 
+def diagram(amplitude, within, depth=0):
+    return cv.diagram(ABSORBER.symmetric_orbit(amplitude), over="amplitude", within=within, depth=depth)
+
+
+def chart():
+    """A locus of symmetry breakings, a point and two regions."""
+    graph = diagram(0.7, (0.7, 0.75))
+    locus = cv.locus(graph["SB1"], over="friction", within=(0.4, 0.5))
+    below = np.add.outer(np.arange(40), -np.arange(40)) < 0
+    motions = [{"word": "LR", "periods": 1}]
+    regions = [Region((0.71, 0.48), 0.5, motions, below), Region((0.74, 0.42), 0.5, [], ~below)]
+    names = ("amplitude", "friction")
+    cusp = PlanePoint("CP1", "cusp", names, (0.72, 0.45), (locus.label,), locus.branch.points[0])
+    made = Chart(
+        names, ((0.7, 0.75), (0.4, 0.5)), {locus.label: locus}, {"CP1": cusp}, regions, {"name": "absorber"}
+    )
+    made.finished = True
+    return made
+
+
+def atlas():
+    graph = diagram(0.55, (0.4, 0.6))
+    graph.attractors += [
+        Attractor(0.5, "LR", 1, "periodic", "B1", 0.75, starts=16),
+        Attractor(0.5, "", 0, "chaotic", None, 0.25, starts=16),
+    ]
+    return graph
+
+
+def survey():
+    """Closed-form outcomes over a grid of two with three samples, one of which failed."""
+    plan = planned(
+        {"half_width": [8.0, 10.0, 12.0], "mass": [1.0, 2.0], "friction": {"uniform": [0.1, 0.3]}}, samples=3
+    )
+    peak = np.array([s["half_width"] * s["mass"] + s["friction"] for s in plan.systems()])
+    notes = np.array([*[""] * (len(peak) - 1), "it did not settle"], dtype=object)
+    columns = {"peak": np.where(notes == "", peak, np.nan), "covered": np.where(notes == "", 1.0, np.nan)}
+    columns = {name: column.reshape(plan.shape) for name, column in columns.items()}
+    return Survey(plan, columns, notes.reshape(plan.shape), {"peak": "mm"}, {"over": "frequency"})
+
+
+def declared():
+    """A mass on a spring with a wall, in a machine file."""
+    pytest.importorskip("heyoka")
+    orbit = machine_file("impact_oscillator").attractor(frequency=2.3)
+    return cv.diagram(orbit, over="frequency", within=(2.25, 2.35), depth=0)
+
+
+RESULTS = {
+    "graph": lambda: diagram(0.55, (0.2, 0.9), depth=1),
+    "chart": chart,
+    "atlas": atlas,
+    "survey": survey,
+    "declared": declared,
+}
+EVERY = ["graph", "chart", "atlas", "survey"]
+
+
 @pytest.fixture(scope="module")
-def page_file(tmp_path_factory):
-    seed = ABSORBER.symmetric_orbit(0.55)
-    graph = cv.diagram(seed, over="amplitude", within=(0.2, 0.9), depth=1)
-    return write_report(graph, tmp_path_factory.mktemp("report") / "page.html", "x.vines")
+def written(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    return cache(lambda name: write_report(RESULTS[name](), folder / f"{name}.html", "x.vines"))
 
 
 @pytest.fixture(scope="module")
@@ -44,166 +103,29 @@ def browser():
         opened.close()
 
 
-@pytest.fixture(scope="module")
-def chart_file(tmp_path_factory):
-    """A locus of symmetry breakings, a point and two regions."""
-    seed = ABSORBER.symmetric_orbit(0.7)
-    graph = cv.diagram(seed, over="amplitude", within=(0.7, 0.75), depth=0)
-    locus = cv.locus(graph["SB1"], over="friction", within=(0.4, 0.5))
-    below = np.add.outer(np.arange(40), -np.arange(40)) < 0
-    regions = [
-        Region((0.71, 0.48), 0.5, [{"word": "LR", "periods": 1}], below),
-        Region((0.74, 0.42), 0.5, [], ~below),
-    ]
-    chart = Chart(
-        ("amplitude", "friction"),
-        ((0.7, 0.75), (0.4, 0.5)),
-        {locus.label: locus},
-        {},
-        regions,
-        {"name": "absorber"},
-    )
-    chart.points["CP1"] = PlanePoint(
-        "CP1", "cusp", chart.parameters, (0.72, 0.45), (locus.label,), locus.branch.points[0]
-    )
-    chart.finished = True
-    return write_report(chart, tmp_path_factory.mktemp("report") / "chart.html", "x-chart.vines")
-
-
-@pytest.fixture(scope="module")
-def atlas_file(tmp_path_factory, page_file):
-    seed = ABSORBER.symmetric_orbit(0.55)
-    graph = cv.diagram(seed, over="amplitude", within=(0.4, 0.6), depth=0)
-    graph.attractors += [
-        Attractor(0.5, "LR", 1, "periodic", "B1", 0.75, starts=16),
-        Attractor(0.5, "", 0, "chaotic", None, 0.25, starts=16),
-    ]
-    return write_report(graph, tmp_path_factory.mktemp("report") / "atlas.html", "x-atlas.vines")
-
-
-@pytest.fixture(scope="module")
-def survey_file(tmp_path_factory):
-    """Closed-form outcomes over a grid of two with three samples, one of which failed."""
-    plan = planned(
-        {"half_width": [8.0, 10.0, 12.0], "mass": [1.0, 2.0], "friction": {"uniform": [0.1, 0.3]}}, samples=3
-    )
-    systems = list(plan.systems())
-    peak = np.array([s["half_width"] * s["mass"] + s["friction"] for s in systems])
-    notes = np.array(["", *[""] * (len(systems) - 2), "it did not settle"], dtype=object)
-    columns = {
-        "peak": np.where(notes == "", peak, np.nan).reshape(plan.shape),
-        "covered": np.where(notes == "", 1.0, np.nan).reshape(plan.shape),
-    }
-    survey = Survey(plan, columns, notes.reshape(plan.shape), {"peak": "mm"}, {"over": "frequency"})
-    return write_report(survey, tmp_path_factory.mktemp("report") / "survey.html", "x-survey.nc")
-
-
-@pytest.fixture(scope="module")
-def declared_file(tmp_path_factory):
-    """A mass on a spring with a wall, in a machine file."""
-    pytest.importorskip("heyoka")
-    from orbits import Machine, Wall
-    from orbits.symbols import cos
-
-    machine = Machine(
-        name="stop",
-        states=("x", "v"),
-        parameters={"forcing": 1.0, "frequency": 2.3, "damping": 0.05, "gap": 0.1, "restitution": 0.8},
-        phase_rate="frequency",
-        motion=lambda s, phase, p, contact: (s.v, p.forcing * cos(phase) - 2 * p.damping * s.v - s.x),
-        contacts=[
-            Wall("R", gap=lambda s, phase, p: p.gap - s.x, push={"v": -1.0}, restitution="restitution")
-        ],
-    )
-    graph = cv.diagram(machine.attractor(frequency=2.3), over="frequency", within=(2.25, 2.35), depth=0)
-    return write_report(graph, tmp_path_factory.mktemp("report") / "declared.html", "x.vines")
-
-
 @pytest.fixture
-def opened(browser, request):
-    page_file = request.getfixturevalue(getattr(request, "param", "page_file"))
+def opened(browser, written, request):
+    address = written(getattr(request, "param", "graph")).as_uri()
     page = browser.new_page(viewport={"width": 1200, "height": 1300}, color_scheme="light")
-    page.complaints, page.asked = [], []
-    page.on("console", lambda m: page.complaints.append(m.text) if m.type in ("error", "warning") else None)
-    page.on("pageerror", lambda error: page.complaints.append(str(error)))
-    page.on("request", lambda request: page.asked.append(request.url))
-    page.goto(page_file.as_uri())
+    complaints, asked = [], []
+    page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(address)
     page.wait_for_selector("body[data-ready=yes]", timeout=60_000)
     yield page
-    assert page.complaints == []
-    assert page.asked == [page_file.as_uri()]
+    assert complaints == []
+    assert asked == [address]
     page.close()
 
 
-def test_it_draws_and_a_click_on_a_row_jumps_to_the_point(opened):
-    assert opened.locator("#diagram .scatterlayer .trace").count() > 3
-    opened.locator("#row-LP1").click()
-    assert opened.locator("#orbit-title").inner_text() == "LP1: fold on B1"
-    assert opened.locator("#command").inner_text() == "contvines orbit x.vines LP1"
-    assert opened.locator("#python").inner_text() == 'cv.load("x.vines")["LP1"].orbit'
-    assert "word LR" in opened.locator("#orbit-about").inner_text()
-    assert opened.locator("#portrait .scatterlayer .trace").count() == 2
-    assert opened.locator("#history .scatterlayer .trace").count() == 4
+def of(name):
+    """The report on another result than the graph."""
+    return pytest.mark.parametrize("opened", [name], indirect=True)
 
 
-def test_a_click_on_a_curve_shows_that_orbit_and_hovering_names_it(opened):
-    place = opened.evaluate(
-        """() => { const d = document.getElementById("diagram"), f = d._fullLayout, t = d.data[0],
-             i = Math.floor(t.x.length / 2), r = d.getBoundingClientRect();
-           return [r.left + f._size.l + f.xaxis.d2p(t.x[i]), r.top + f._size.t + f.yaxis.d2p(t.y[i]), t.customdata[i][1]]; }"""
-    )
-    opened.mouse.move(place[0], place[1])
-    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=60_000)
-    assert "B1" in opened.locator("#diagram .hoverlayer").text_content()
-    opened.mouse.click(place[0], place[1])
-    opened.wait_for_function(f"document.getElementById('command').textContent.endsWith('B1:{place[2]}')")
-
-
-def test_the_absorber_moves_and_stops(opened):
-    def frame():
-        return int(opened.locator("#animation").get_attribute("data-frame"))
-
-    opened.locator("#row-SB1").click()
-    if opened.locator("#play").inner_text() == "play":
-        opened.locator("#play").click()
-    first = frame()
-    opened.wait_for_function(f"Number(document.getElementById('animation').dataset.frame) > {first + 3}")
-    opened.locator("#play").click()
-    opened.wait_for_timeout(100)
-    held = frame()
-    opened.wait_for_timeout(200)
-    assert frame() == held
-
-
-@pytest.mark.parametrize("opened", ["declared_file"], indirect=True)
-def test_the_body_of_a_machine_on_a_page_moves_before_its_wall(opened):
-    opened.locator("#row-B1").click()
-    assert opened.locator("#stage").is_visible()
-    if opened.locator("#play").inner_text() == "play":
-        opened.locator("#play").click()
-    first = opened.locator("#animation").get_attribute("data-body")
-    opened.wait_for_function(f"document.getElementById('animation').dataset.body !== '{first}'")
-    assert "x of the machine" in opened.locator("#animation").get_attribute("aria-label")
-
-
-def test_keys_walk_along_a_branch(opened):
-    opened.locator("#row-B1").press("Enter")
-    before = opened.locator("#command").inner_text()
-    opened.locator("#diagram").press("ArrowRight")
-    after = opened.locator("#command").inner_text()
-    assert before.startswith("contvines orbit x.vines") and after != before
-
-
-def test_other_measures_can_be_chosen(opened):
-    opened.locator("#y").select_option("impact_speed")
-    opened.wait_for_function(
-        "document.getElementById('diagram').layout.yaxis.title.text.startsWith('fastest impact')"
-    )
-    assert opened.locator("#y").input_value() == "impact_speed"
-    assert opened.locator("#diagram .ytitle").text_content().startswith("fastest impact")
-
-
-EVERY = ["page_file", "chart_file", "atlas_file", "survey_file"]
+def text(page, place):
+    return page.locator(place).inner_text()
 
 
 def place_of(page, trace, i):
@@ -219,51 +141,116 @@ def trace_with(page, what):
     return page.evaluate(f"() => document.getElementById('diagram').data.findIndex((t) => {what})")
 
 
-@pytest.mark.parametrize("opened", ["chart_file"], indirect=True)
+def named_and_clicked(page, trace, i):
+    """What hovering over a point of a trace says, before it is clicked."""
+    x, y = place_of(page, trace, i)
+    page.mouse.move(x, y)
+    page.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=60_000)
+    said = page.locator("#diagram .hoverlayer").text_content()
+    page.mouse.click(x, y)
+    return said
+
+
+def moves(page, attribute="data-frame"):
+    """Play, until the picture has changed some times."""
+    if text(page, "#play") == "play":
+        page.locator("#play").click()
+    for _ in range(4):
+        before = page.locator("#animation").get_attribute(attribute)
+        page.wait_for_function(
+            f"document.getElementById('animation').getAttribute('{attribute}') !== '{before}'"
+        )
+
+
+def test_it_draws_and_a_click_on_a_row_jumps_to_the_point(opened):
+    assert opened.locator("#diagram .scatterlayer .trace").count() > 3
+    opened.locator("#row-LP1").click()
+    assert text(opened, "#orbit-title") == "LP1: fold on B1"
+    assert text(opened, "#command") == "contvines orbit x.vines LP1"
+    assert text(opened, "#python") == 'cv.load("x.vines")["LP1"].orbit'
+    assert "word LR" in text(opened, "#orbit-about")
+    assert opened.locator("#portrait .scatterlayer .trace").count() == 2
+    assert opened.locator("#history .scatterlayer .trace").count() == 4
+    assert not opened.locator("#shares").is_visible()  # there are no attractors
+
+
+def test_a_click_on_a_curve_shows_that_orbit_and_hovering_names_it(opened):
+    middle, point = opened.evaluate(
+        """() => { const t = document.getElementById("diagram").data[0], i = Math.floor(t.x.length / 2);
+             return [i, t.customdata[i][1]]; }"""
+    )
+    assert "B1" in named_and_clicked(opened, 0, middle)
+    opened.wait_for_function(f"document.getElementById('command').textContent.endsWith('B1:{point}')")
+
+
+def test_the_absorber_moves_and_stops(opened):
+    opened.locator("#row-SB1").click()
+    moves(opened)
+    opened.locator("#play").click()
+    opened.wait_for_timeout(100)
+    held = opened.locator("#animation").get_attribute("data-frame")
+    opened.wait_for_timeout(200)
+    assert opened.locator("#animation").get_attribute("data-frame") == held
+
+
+@of("declared")
+def test_the_body_of_a_machine_on_a_page_moves_before_its_wall(opened):
+    opened.locator("#row-B1").click()
+    assert opened.locator("#stage").is_visible()
+    moves(opened, "data-body")
+    assert "x of the machine" in opened.locator("#animation").get_attribute("aria-label")
+
+
+def test_keys_walk_along_a_branch(opened):
+    opened.locator("#row-B1").press("Enter")
+    before = text(opened, "#command")
+    opened.locator("#diagram").press("ArrowRight")
+    assert before.startswith("contvines orbit x.vines") and text(opened, "#command") != before
+
+
+def test_other_measures_can_be_chosen(opened):
+    opened.locator("#y").select_option("impact_speed")
+    opened.wait_for_function(
+        "document.getElementById('diagram').layout.yaxis.title.text.startsWith('fastest impact')"
+    )
+    assert opened.locator("#y").input_value() == "impact_speed"
+    assert opened.locator("#diagram .ytitle").text_content().startswith("fastest impact")
+
+
+@of("chart")
 def test_a_chart_shows_the_motion_of_the_point_that_is_clicked(opened):
-    assert "1 locus, 1 point of codimension two, 2 regions" in opened.locator("#about").inner_text()
+    assert "1 locus, 1 point of codimension two, 2 regions" in text(opened, "#about")
     assert opened.locator("#portrait .scatterlayer .trace").count() == 2
     line = trace_with(opened, "t.customdata && t.customdata[0][1] !== null && t.x.length > 2")
-    x, y = place_of(opened, line, 2)
-    opened.mouse.move(x, y)
-    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=60_000)
-    assert "symmetry breaking" in opened.locator("#diagram .hoverlayer").text_content()
-    opened.mouse.click(x, y)
+    assert "symmetry breaking" in named_and_clicked(opened, line, 2)
     opened.wait_for_function("document.getElementById('python').textContent.endsWith('.orbit(2)')")
-    assert "word LR" in opened.locator("#orbit-about").inner_text()
+    assert "word LR" in text(opened, "#orbit-about")
     opened.locator("#row-CP1").click()
-    assert opened.locator("#orbit-title").inner_text() == "CP1: cusp"
+    assert text(opened, "#orbit-title") == "CP1: cusp"
     opened.locator("#row-SB1").press("Enter")
-    before = opened.locator("#python").inner_text()
+    before = text(opened, "#python")
     opened.locator("#diagram").press("ArrowRight")
-    assert opened.locator("#python").inner_text() != before
-    first = int(opened.locator("#animation").get_attribute("data-frame"))
-    if opened.locator("#play").inner_text() == "play":
-        opened.locator("#play").click()
-    opened.wait_for_function(f"Number(document.getElementById('animation').dataset.frame) > {first + 3}")
+    assert text(opened, "#python") != before
+    moves(opened)
     assert opened.locator("#diagram .heatmaplayer image").count() == 1
     opened.locator("#tints").uncheck()
     opened.wait_for_function("document.querySelectorAll('#diagram .heatmaplayer image').length === 0")
 
 
-@pytest.mark.parametrize("opened", ["atlas_file"], indirect=True)
+@of("atlas")
 def test_an_atlas_shows_shares_and_leads_from_an_attractor_to_its_branch(opened):
     assert opened.locator("#share .barlayer .trace").count() == 2
     rows = opened.locator("#attractors tbody tr")
     assert rows.count() == 2 and "75 % of 16" in rows.nth(0).inner_text()
     rows.nth(0).click()
-    assert opened.locator("#orbit-title").inner_text().startswith("B1, point")
-    value = float(opened.locator("#orbit-about").inner_text().split("amplitude = ")[1].split(";")[0])
+    assert text(opened, "#orbit-title").startswith("B1, point")
+    value = float(text(opened, "#orbit-about").split("amplitude = ")[1].split(";")[0])
     assert abs(value - 0.5) < 0.03
 
 
-def test_a_diagram_without_attractors_has_no_shares(opened):
-    assert not opened.locator("#shares").is_visible()
-
-
-@pytest.mark.parametrize("opened", ["survey_file"], indirect=True)
+@of("survey")
 def test_a_survey_shows_the_machines_behind_a_point(opened):
-    assert "18 machines, 1 of them failed; uncertain: friction" in opened.locator("#about").inner_text()
+    assert "18 machines, 1 of them failed; uncertain: friction" in text(opened, "#about")
     assert opened.locator("#diagram .heatmaplayer image").count() == 1
     opened.locator("#over").select_option("half_width")
     opened.wait_for_function("document.querySelectorAll('#diagram .scatterlayer .trace').length > 4")
@@ -271,10 +258,10 @@ def test_a_survey_shows_the_machines_behind_a_point(opened):
     place = opened.evaluate(f"() => document.getElementById('diagram').data[{k}].customdata.indexOf(7)")
     opened.mouse.click(*place_of(opened, k, place))
     opened.wait_for_function("document.querySelector('#chosen tr.chosen')?.id === 'system-7'")
-    assert opened.locator("#system-title").inner_text() == "half_width = 10, mass = 1: 3 machines"
+    assert text(opened, "#system-title") == "half_width = 10, mass = 1: 3 machines"
     opened.locator("#diagram").press("ArrowRight")
     opened.wait_for_function("document.querySelector('#chosen tr.chosen').id === 'system-8'")
-    assert "it did not settle" in opened.locator("#failed").inner_text()
+    assert "it did not settle" in text(opened, "#failed")
     opened.locator("#outcome").select_option("covered")
     opened.wait_for_function(
         "document.getElementById('diagram').layout.yaxis.title.text.startsWith('share of the interval')"
@@ -314,8 +301,8 @@ def test_in_the_dark_on_paper_and_on_a_narrow_screen(opened):
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_every_page_is_small_and_has_no_addresses(name, request):
-    text = request.getfixturevalue(name).read_text(encoding="utf-8")
-    assert len(text) < 5_000_000
-    for part in text.split('<script id="plotly"')[0], text.split("</script>")[-2]:
+def test_every_page_is_small_and_has_no_addresses(name, written):
+    page = written(name).read_text(encoding="utf-8")
+    assert len(page) < 5_000_000
+    for part in page.split('<script id="plotly"')[0], page.split("</script>")[-2]:
         assert "http" not in part.replace("http-equiv", "")
