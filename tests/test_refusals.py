@@ -13,17 +13,15 @@ import contvines as cv
 import orbits
 from contvines.continuation.settings import Settings
 from contvines.problems.functions import ParameterSet
-from orbits import Absorber, Coupled, DryFriction, Machine, Switch, Wall
+from orbits import Absorber, DryFriction, Machine, Switch, Wall
 from orbits import multiple_scales as ms
 from orbits.attractors import sweep
 from orbits.design import Design
 from orbits.simulation import simulate
 from orbits.words import Word
+from tests.machines import ABSORBER, COUPLED, STRONG
 from tools.pages.pages import page
 
-NUMBERS = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211}
-PAPER = Absorber(**NUMBERS, mass_ratio=0.006)
-COUPLED = Coupled(**NUMBERS, mass_ratio=0.006, damping=1.0, forcing=2.47)
 UNIT = (-1.0, 1.0)
 WALL = {"wall": lambda u, p: u[0]}
 
@@ -36,14 +34,22 @@ def algebraic(F=straight, u0=(0.0,), p0=0.0, **options):
     return cv.AlgebraicProblem(F, list(u0), p0, **options)
 
 
+def symmetric():
+    return ABSORBER.symmetric_orbit(amplitude=0.55)
+
+
+def diagram(**options):
+    return cv.diagram(algebraic(), within=UNIT, **options)
+
+
 @cache
 def line():
-    return cv.diagram(algebraic(), within=UNIT)
+    return diagram()
 
 
 @cache
 def response():
-    return cv.diagram(PAPER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 0.9), depth=0)
+    return cv.diagram(symmetric(), over="amplitude", within=(0.2, 0.9), depth=0)
 
 
 def kind(name="mine", label="MI", **options):
@@ -55,7 +61,7 @@ def half(point):
 
 
 def with_kind(extra):
-    return cv.diagram(algebraic(), within=UNIT, kinds=[*cv.KINDS, extra])
+    return diagram(kinds=[*cv.KINDS, extra])
 
 
 def products():
@@ -91,6 +97,10 @@ def box(**changes):
         "contacts": [Wall("R", lambda s, phase, p: p.gap - s.x, {"v": -1.0})],
     }
     return Machine(**(given | changes))
+
+
+def resting():
+    return box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0)
 
 
 def rubbing(s, phase, p, contact):
@@ -145,7 +155,7 @@ REFUSED = {
     "empty or reversed": lambda: list(cv.trace(algebraic(), (1.0, 0.0))),
     "outside": lambda: list(cv.trace(algebraic(), (0.5, 1.0))),
     "does not converge": lambda: list(cv.trace(algebraic(lambda u, p: u**2 + 1.0 + 0.0 * p, (0.3,)), UNIT)),
-    "name the parameter": lambda: next(cv.trace(PAPER.symmetric_orbit(amplitude=0.6), within=(0.5, 0.7))),
+    "name the parameter": lambda: next(cv.trace(symmetric(), within=(0.5, 0.7))),
     "must be an orbit, a special point or a problem": lambda: next(cv.trace("LR", within=(0.5, 0.7))),
     "there is no parameter 'q'; the problem has a, b": lambda: products().against("q"),
     "the seed must be an orbit, a special point or a problem with u0 and p0, not int": lambda: cv.diagram(3),
@@ -154,18 +164,16 @@ REFUSED = {
     "step_rule = 'angle' must be a contvines.StepRule": lambda: Settings(step_rule="angle"),
     "must be a function of": lambda: cv.StepRule(3.0, "three"),
     "step_rule: name = 3": lambda: cv.StepRule(lambda *numbers: 1.0, 3),
-    "step_rule 'none': judge returned None for a step": lambda: cv.diagram(
-        algebraic(), within=UNIT, settings={"step_rule": cv.StepRule(lambda *numbers: None, "none")}
+    "step_rule 'none': judge returned None for a step": lambda: diagram(
+        settings={"step_rule": cv.StepRule(lambda *numbers: None, "none")}
     ),
     "step_rule 'far': judge returned -2.0": lambda: cv.diagram(
-        PAPER.symmetric_orbit(amplitude=0.6),
+        symmetric(),
         over="amplitude",
         within=(0.5, 0.7),
         settings={"step_rule": cv.StepRule(lambda *numbers: -2.0, "far")},
     ),
-    "journal = 'line.vines' has no method 'recall'": lambda: cv.diagram(
-        algebraic(), within=UNIT, journal="line.vines"
-    ),
+    "journal = 'line.vines' has no method 'recall'": lambda: diagram(journal="line.vines"),
     "wants the label of a special point as text, for example 'EP1', the label of": lambda: cv.switch(
         line(), line()["EP1"]
     ),
@@ -174,6 +182,8 @@ REFUSED = {
     "the graph has no 'LP7'": lambda: line().plot(labels=["LP7"]),
     "give True, False or a list": lambda: line().plot(labels="BP1"),
     "color = 'kind' is unknown; choose one of branch, word, stability": lambda: line().plot(color="kind"),
+    "interrupt = 'stop'": lambda: diagram(interrupt="stop"),
+    "nothing to go on with": lambda: cv.resume(line()),
     # kinds of one's own
     "small letters": lambda: kind("Neutral saddle"),
     "used by another": lambda: with_kind(kind(label="LP")),
@@ -190,7 +200,7 @@ REFUSED = {
     ),
     "kind mine: locus = 'fold' is no function": lambda: kind(locus="fold"),
     "kind mine: marker = 'zz'": lambda: kind(marker="zz"),
-    "kinds is a Kind; a list is asked for": lambda: cv.diagram(algebraic(), within=UNIT, kinds=kind()),
+    "kinds is a Kind; a list is asked for": lambda: diagram(kinds=kind()),
     "no condition to follow": without_condition,
     # two parameters
     "over = 'amplitude' is the parameter of the diagram itself": lambda: cv.locus(
@@ -207,16 +217,16 @@ REFUSED = {
     ),
     "friction = -1 is out of range": lambda: cv.chart(response(), over="friction", within=(-1.0, 0.9)),
     # what coexists
-    "budget = 1.5": lambda: cv.atlas(PAPER, over="amplitude", within=(0.3, 0.8), budget=1.5),
-    "values: 9 lies outside": lambda: cv.atlas(PAPER, over="amplitude", within=(0.3, 0.8), values=[9.0]),
+    "budget = 1.5": lambda: cv.atlas(ABSORBER, over="amplitude", within=(0.3, 0.8), budget=1.5),
+    "values: 9 lies outside": lambda: cv.atlas(ABSORBER, over="amplitude", within=(0.3, 0.8), values=[9.0]),
     "lies outside the interval of saddles": lambda: cv.basins(
-        PAPER, "amplitude", 0.95, points=2, saddles=response()
+        ABSORBER, "amplitude", 0.95, points=2, saddles=response()
     ),
     "choose the plane w, w_rate, with all other coordinates zero": lambda: cv.basins(
-        PAPER, "amplitude", 0.3, points=4, saddles=response(), fixed={"phase": 1.0}
+        ABSORBER, "amplitude", 0.3, points=4, saddles=response(), fixed={"phase": 1.0}
     ),
     "the graph's parameter is amplitude, not friction": lambda: cv.basins(
-        PAPER.population("friction", amplitude=0.55), at=0.3, points=4, saddles=response()
+        ABSORBER.population("friction", amplitude=0.55), at=0.3, points=4, saddles=response()
     ),
     "has no stable real motion at amplitude = 0.21": lambda: cv.robustness(response()["B1"], 0.21),
     # equations of one's own
@@ -314,23 +324,23 @@ REFUSED = {
     "around has shape (4, 3)": lambda: oscillator().population(around=np.ones((4, 3))),
     "at = nan": lambda: cv.basins(oscillator().population(), at=np.nan, points=4),
     # machines, words and orbits
-    "restitution = 1.4": lambda: Absorber(**NUMBERS | {"restitution": 1.4}),
-    "begins at": lambda: PAPER.symmetric_orbit(0.1),
-    "the other way": lambda: PAPER.orbit(
-        "s-s+", amplitude=0.115, guess=PAPER.orbit("s+s-", amplitude=0.115).nodes
+    "restitution = 1.4": lambda: Absorber(**STRONG | {"restitution": 1.4}),
+    "begins at": lambda: ABSORBER.symmetric_orbit(0.1),
+    "the other way": lambda: ABSORBER.orbit(
+        "s-s+", amplitude=0.115, guess=ABSORBER.orbit("s+s-", amplitude=0.115).nodes
     ),
-    "one [phase": lambda: PAPER.orbit("LR", amplitude=0.5, guess=[[1.0, 2.0]]),
-    "simulator finds": lambda: PAPER.orbit("LRLtLt", amplitude=0.3),
-    "word = 1000 is no word: give the events of a period as text, such as 'LR'": lambda: PAPER.orbit(
+    "one [phase": lambda: ABSORBER.orbit("LR", amplitude=0.5, guess=[[1.0, 2.0]]),
+    "simulator finds": lambda: ABSORBER.orbit("LRLtLt", amplitude=0.3),
+    "word = 1000 is no word: give the events of a period as text, such as 'LR'": lambda: ABSORBER.orbit(
         1000, amplitude=0.5
     ),
     "no symmetric orbit with two impacts": lambda: COUPLED.symmetric_orbit(frequency=0.9),
     "letter 'X'": lambda: Word.parse("LX"),
     "cannot come next": lambda: Word.parse("LtR"),
     # simulation
-    "w = 1.2 lies outside": lambda: simulate(PAPER, {"w": 1.2}, amplitude=0.5, periods=1),
-    "how long": lambda: simulate(PAPER, {}, amplitude=0.5),
-    "'forcing' is no parameter": lambda: sweep(PAPER, "forcing", [1.0]),
+    "w = 1.2 lies outside": lambda: simulate(ABSORBER, {"w": 1.2}, amplitude=0.5, periods=1),
+    "how long": lambda: simulate(ABSORBER, {}, amplitude=0.5),
+    "'forcing' is no parameter": lambda: sweep(ABSORBER, "forcing", [1.0]),
     # pages
     "motion must be affine in contact.floor": lambda: rough(
         lambda s, phase, p, contact: (s.v, contact.floor**2 - s.x)
@@ -354,13 +364,13 @@ REFUSED = {
     ),
     "no state": lambda: box(starts={"y": (0, 1)}),
     # animations
-    "a.avi: an animation": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("a.avi"),
-    "no folder": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("none/a.gif"),
-    "seconds = 0.0": lambda: PAPER.symmetric_orbit(amplitude=0.6).animate("a.gif", seconds=0.0),
+    "a.avi: an animation": lambda: symmetric().animate("a.avi"),
+    "no folder": lambda: symmetric().animate("none/a.gif"),
+    "seconds = 0.0": lambda: symmetric().animate("a.gif", seconds=0.0),
     "'box' cannot go to another process": lambda: pickle.dumps(box()),
     "response = 'max_x2': expected max_x, min_x, max_abs_x": lambda: box(response="max_x2"),
     "'box' is forced: its motions without events are orbits with the word ''": lambda: box().smooth(),
-    "forcing is missing": lambda: Coupled(**NUMBERS, mass_ratio=0.01).vector(),
+    "forcing is missing": lambda: Coupled(**STRONG, mass_ratio=0.01).vector(),
     "gravity pulls it to a wall and keeps it there": lambda: orbits.Cavity(
         restitution=0.5, friction=0.1, gravity=0.3, slope=0.5, mass_ratio=0.0
     ).orbit("", amplitude=0.05),
@@ -371,39 +381,31 @@ REFUSED = {
     "no linear peak": lambda: ms.tuned_backbone(ms.SlowFlow(friction=0.0, damping=0.0)),
     "C_min": lambda: ms.integrate(ms.SlowFlow(), 0.0, 0.1, 0.0, 1.0),
     # misspelt names
-    "diagram has no argument 'dept' (did you mean 'depth'?); it has seed, over": lambda: cv.diagram(
-        algebraic(), within=UNIT, dept=3
-    ),
-    "use settings={'max_step': 0.01}": lambda: cv.diagram(algebraic(), within=UNIT, max_step=0.01),
+    "diagram has no argument 'dept' (did you mean 'depth'?); it has seed, over": lambda: diagram(dept=3),
+    "use settings={'max_step': 0.01}": lambda: diagram(max_step=0.01),
     "chart needs within (Interval of the second parameter)": lambda: cv.chart(line(), over="q"),
     "Absorber needs friction (Coulomb coefficient) and gravity": lambda: Absorber(restitution=0.76),
     "Absorber takes its parameters by name, as restitution=0.76, not 0.5 alone": lambda: Absorber(0.5),
     "MapProblem has no argument 'paramter' (did you mean 'parameter'?); it has f": lambda: cv.MapProblem(
         straight, [1.0], paramter="mu"
     ),
-    "settings: there is no 'max_stp' (did you mean 'max_step'?)": lambda: cv.diagram(
-        algebraic(), within=UNIT, settings={"max_stp": 0.1}
-    ),
+    "settings: there is no 'max_stp' (did you mean 'max_step'?)": lambda: diagram(settings={"max_stp": 0.1}),
     "legend = 'insid' is unknown (did you mean 'inside'?); choose of inside": lambda: line().plot(
         legend="insid"
     ),
     "contvines has no 'daigram' (did you mean 'diagram'?)": lambda: cv.daigram,
     "B1.orbit(1.5): give the number of a point, from 0": lambda: line()["B1"].orbit(1.5),
     "Absorber has no parameter 'frction' (did you mean 'friction'?)": lambda: Absorber(frction=0.5),
-    "Absorber.symmetric_orbit has no argument 'amplitde' (did you mean": lambda: PAPER.symmetric_orbit(
+    "Absorber.symmetric_orbit has no argument 'amplitde' (did you mean": lambda: ABSORBER.symmetric_orbit(
         amplitde=0.5
     ),
-    "events are of built-in machines; 'box' is declared: its orbits have nodes": lambda: (
-        box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0).events
-    ),
-    "parameter = 'gp' is unknown to the model 'box' (did you mean 'gap'?)": lambda: (
-        box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0).problem("gp")
-    ),
+    "events are of built-in machines; 'box' is declared: its orbits have nodes": lambda: resting().events,
+    "parameter = 'gp' is unknown to the model 'box' (did you mean 'gap'?)": lambda: resting().problem("gp"),
     "within = [-1, 3]: frequency = -1: a forcing frequency is above 0": lambda: cv.diagram(
-        box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0), over="frequency", within=(-1, 3)
+        resting(), over="frequency", within=(-1, 3)
     ),
     "within = [0.2, 2]: restitution = 2 is out of range; give a number above 0": lambda: cv.diagram(
-        PAPER.symmetric_orbit(amplitude=0.55), over="restitution", within=(0.2, 2.0)
+        symmetric(), over="restitution", within=(0.2, 2.0)
     ),
     "at = 'x': the value of m must be a finite number": lambda: cv.basins(oscillator().population(), at="x"),
     "Machine has no argument 'state' (did you mean 'states'?); it has name": lambda: Machine(
