@@ -53,36 +53,6 @@ def atlas(start: dict[str, Any], **options: Any) -> dict[str, Any]:
     return of_graph(cv.atlas(first_orbit(start).model, **settings))
 
 
-_CHARTS: dict[str, tuple[str, str, tuple[float, float], dict[str, Any]]] = {
-    "chart friction": ("friction", "friction", (0.3, 0.7), {"depth": 0}),
-    "chart frequency": ("coupled, stronger", "forcing", (2.8, 3.4), {"depth": 0}),
-}
-_ATLASES: dict[str, tuple[str, dict[str, Any]]] = {
-    "atlas friction": (
-        "friction",
-        {"values": [0.3, 0.6, 0.95, 1.1], "starts": 24, "scan": 0, "depth": 2},
-    ),
-    "atlas frequency": ("frequency", {"values": [0.98, 1.0], "starts": 16, "scan": 0, "depth": 1}),
-}
-_DEMOS = ("ab", "pp3", "lorenz 84", "enz", "henon", "delayed logistic", "generalized henon", "logistic")
-
-
-def studies() -> dict[str, Callable[[], dict[str, Any]]]:
-    """All golden studies by name: each a function that computes its compact form."""
-    stored = starts()
-    found: dict[str, Callable[[], dict[str, Any]]] = {
-        name: partial(diagram, start) for name, start in stored.items()
-    }
-    for name in _DEMOS:
-        found[f"demo {name}"] = partial(demo, name)
-    for name, (start, over, within, options) in _CHARTS.items():
-        found[name] = partial(chart, stored[start], over, within, **options)
-    found["chart henon"] = henon_chart
-    for name, (start, options) in _ATLASES.items():
-        found[name] = partial(atlas, stored[start], **options)
-    return found
-
-
 def henon_chart() -> dict[str, Any]:
     """Fixed points of the map x, y -> y, a - b x - y^2 against both parameters."""
     problem = cv.MapProblem(
@@ -90,6 +60,23 @@ def henon_chart() -> dict[str, Any]:
     )
     graph = cv.diagram(problem, over="a", within=(-1.0, 3.0), depth=0)
     return of_chart(cv.chart(graph, over="b", within=(-0.9, 1.3), regions=False, depth=0))
+
+
+def studies() -> dict[str, Callable[[], dict[str, Any]]]:
+    """All golden studies by name: each a function that computes its compact form."""
+    stored = starts()
+    friction, frequency, stronger = (stored[name] for name in ("friction", "frequency", "coupled, stronger"))
+    demos = ("ab", "pp3", "lorenz 84", "enz", "henon", "delayed logistic", "generalized henon", "logistic")
+    looks = {"values": [0.3, 0.6, 0.95, 1.1], "starts": 24, "scan": 0, "depth": 2}
+    return {
+        **{name: partial(diagram, start) for name, start in stored.items()},
+        **{f"demo {name}": partial(demo, name) for name in demos},
+        "chart friction": partial(chart, friction, "friction", (0.3, 0.7), depth=0),
+        "chart frequency": partial(chart, stronger, "forcing", (2.8, 3.4), depth=0),
+        "chart henon": henon_chart,
+        "atlas friction": partial(atlas, friction, **looks),
+        "atlas frequency": partial(atlas, frequency, values=[0.98, 1.0], starts=16, scan=0, depth=1),
+    }
 
 
 def file_of(name: str) -> Path:
