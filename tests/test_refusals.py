@@ -370,7 +370,7 @@ REFUSED = {
     "'box' cannot go to another process": lambda: pickle.dumps(box()),
     "response = 'max_x2': expected max_x, min_x, max_abs_x": lambda: box(response="max_x2"),
     "'box' is forced: its motions without events are orbits with the word ''": lambda: box().smooth(),
-    "forcing is missing": lambda: Coupled(**STRONG, mass_ratio=0.01).vector(),
+    "forcing is missing": lambda: orbits.Coupled(**STRONG).vector(),
     "gravity pulls it to a wall and keeps it there": lambda: orbits.Cavity(
         restitution=0.5, friction=0.1, gravity=0.3, slope=0.5, mass_ratio=0.0
     ).orbit("", amplitude=0.05),
