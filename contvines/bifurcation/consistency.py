@@ -1,4 +1,4 @@
-"""Consistency: what both ends of a segment say must agree with the special points found between them.
+"""Consistency: check that signs and counts at the two ends of a segment agree with the special points found between them.
 
 Along one branch
 
@@ -6,16 +6,16 @@ Along one branch
 * the sign of det [[F_u, F_p], [tangent]] changes at branch points of odd multiplicity and where the branch meets its own image,
 * the number of multipliers outside the circle (right of the axis) changes by one at folds, branch points and flips, by two at pairs.
 
-Neighbouring branches have opposite signs of the determinant, so a step from one branch to another shows, too: it is traced again with
-shorter ones (:mod:`contvines.branches.tracing`). Any other segment that does not agree is halved until its parts do, or are as short as
-`Settings.resolution`; then the graph says that it is unresolved.
+Neighbouring branches have opposite signs of the determinant, so this check also finds a step that jumped from one branch to another; it is
+traced again with shorter steps (:mod:`contvines.branches.tracing`). Any other inconsistent segment is halved until its parts are consistent, or as
+short as `Settings.resolution`; the graph then marks it as unresolved.
 
-det [[F_u, F_p], [t]] = det(F_u) t.t / t_p for the tangent t: with its sign, which comes with every point, that of det(F_u) is
-known. It has the accuracy of an elimination with pivots; eigenvalues may have less, where the others are very much larger.
+For the tangent t, det [[F_u, F_p], [t]] = det(F_u) t.t / t_p: the sign of the left side, which is stored with every point, gives the sign of
+det(F_u). It has the accuracy of an elimination with pivots; an eigenvalue can be less accurate if others are very much larger.
 
-A matrix is regular, and its determinant has one sign, for all errors of its entries up to E where the spectral radius of |M^-1| E is
+A matrix M is regular, and its determinant has one sign, for all errors of its entries up to E if the spectral radius of |M^-1| E is
 below one (Rump, Linear Multilinear Algebra 47 (2000) 1, theorem 1.1; with E a multiple of |M| the radius is the componentwise condition
-number of Bauer and Skeel, which scales of rows and columns do not change). Elsewhere the sign may be that of rounding, and says nothing.
+number of Bauer and Skeel, which does not depend on scales of rows and columns). Otherwise the sign may be rounding.
 """
 
 from __future__ import annotations
@@ -33,21 +33,27 @@ from .location_error import rounding_of_parameter, singular_within
 from .scan import pairs_past
 from .settings import LOCATING
 
-#: sort of multipliers -> kinds at which one of them passes the circle
+#: for each sort of multipliers (plus, minus, pair): the kinds of points at which one of them crosses the circle
 PASSED_AT = (
     ("fold", "branch-point"),
     ("period-doubling", "symmetry-breaking"),
     ("neimark-sacker", "hopf"),
 )
-ROUNDING = 32.0 * EPSILON  # of entries
-KNOWN = 10.0  # times the distance of a multiplier from the circle where it should be on it: how well the others are known
+ROUNDING = 32.0 * EPSILON  # assumed relative error of the entries of F_u and F_p
+KNOWN = 10.0  # assumed error of the other multipliers at a special point, in units of the critical one's distance from the circle
 
 
 def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
-    """Whether the numbers of multipliers past the circle change by more than the points found between say.
+    """Whether the numbers of multipliers outside the circle change by more than the points found on the segment explain.
 
-    Real multipliers may go through infinity, or come from one side of the axis to the other as pairs: of an odd number one has passed the
-    circle, and so has one where the number outside changes.
+    Real multipliers may pass through infinity, or change from past +1 to past -1 by way of complex pairs, without crossing the circle. A change
+    counts only if the total number outside changes, or the number past +1 changes by an odd number.
+
+    Parameters
+    ----------
+    segment : Segment
+    found : sequence of Located
+        Special points found on it.
     """
     engine = segment.engine
     before, after = segment.counts
@@ -56,18 +62,18 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     plus, minus, pairs = (b - a for a, b in zip(before, after))
     if engine.detection == "real" and plus and plus % 2 == 0:
         ends = pairs_past(engine, np.array([segment.a.row, segment.b.row]))
-        plus -= int(ends[1] - ends[0])  # a pair has passed the axis, where only branch points are looked for
+        plus -= int(ends[1] - ends[0])  # a pair has crossed the axis; only branch points are sought here
     side = turned(segment.a, segment.b)
     if engine.scaled and engine.signed and abs(plus) == 1 and side is False:
-        plus = 0  # a count that the determinant contradicts is that of rounding
+        plus = 0  # the determinant contradicts the count: rounding
     if plus and engine.adaptive and segment.a.sign == segment.b.sign:
         rounded = max(rounding_of_parameter(engine, end) for end in (segment.a, segment.b))
         if abs(segment.b.p - segment.a.p) <= 2.0 * rounded:
-            plus = 0  # folds that are nearer than rounding
+            plus = 0  # the ends are nearer to each other than rounding
     if max(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= engine.upright(segment.a.p):
-        plus = 0  # det(F_u) vanishes with the parameter's part of the tangent, all along an upright branch
+        plus = 0  # upright branch: the parameter's component of the tangent is zero, and with it det(F_u)
     if not engine.scaled and engine.detection == "map" and side is not None and plus % 2 != side:
-        # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes
+        # det(F_u) keeps its sign if a multiplier passes through infinity, as where an event of a virtual orbit grazes
         short = segment.length <= 2.0 * engine.settings.resolution
         return not (minus == -plus and pairs == 0 and (short or segment.through_infinity()))
     known = [sum(e.kind in kinds for e in found) for kinds in PASSED_AT]
@@ -75,18 +81,18 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     missing = any(abs(change) > number for change, number in zip((plus, minus, pairs), known))
     if not (missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)):
         return False
-    # two that have come past +1 may meet, and be past -1 at the end
+    # two multipliers that have crossed +1 may meet as a pair and be past -1 at the end
     odd = all(change % 2 == number % 2 for change, number in zip((plus, minus), known))
     told = bool(found) and all(_others_outside(engine, event) is not None for event in found)
     return not (engine.adaptive and odd and told and not _unseen_between(segment, found))
 
 
 def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
-    """Whether the multipliers outside the circle at the points found, their own left out, are others than from there to the next one.
+    """Whether the number of multipliers outside the circle changes between the points found, so that a point is missing.
 
-    From one end to the other each point found takes its own ones across the circle, and nothing else does. A pair may leave the circle
-    between a period doubling and a fold and part on the real axis, or the one that passes +1 at a fold goes on through infinity and
-    comes back through -1: numbers at the two ends do not tell.
+    From one end to the other, only the critical multipliers of each point found may cross the circle, at this point. Counts at the two ends are
+    not enough: a pair may leave the circle between a period doubling and a fold and split on the real axis, or the multiplier that crosses +1 at a
+    fold continues through infinity and returns through -1.
     """
     passed = [_others_outside(segment.engine, event) for event in sorted(found, key=lambda e: e.position)]
     if not passed:
@@ -108,9 +114,20 @@ def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
 
 
 def _others_outside(engine: Engine, event: Located) -> tuple[range, int, bool] | None:
-    """How many multipliers may be outside the circle at a special point but for those that pass it there, how many these are, and whether they do.
+    """Count the multipliers at a special point: critical ones, and others that may be outside the circle.
 
-    How far those that pass it are from the circle where the point was located tells how well the others are known there. None at points of other kinds.
+    The distance of the critical multipliers from the circle, zero in theory, measures how accurate the others are.
+
+    Returns
+    -------
+    others : range
+        Possible numbers of other multipliers outside the circle.
+    own : int
+        Number of critical multipliers: 2 for a pair, else 1.
+    certainly : bool
+        Whether these are critical to the accuracy of the settings.
+
+    None for points of other kinds.
     """
     sort = next((k for k, kinds in enumerate(PASSED_AT) if event.kind in kinds), None)
     if sort is None or event.kind == "branch-point" or event.astray:
@@ -127,31 +144,31 @@ def _others_outside(engine: Engine, event: Located) -> tuple[range, int, bool] |
 
 
 def on_circle(engine: Engine, point: Solved, within: float) -> bool:
-    """Whether a multiplier is so near to the circle that numbers past it tell nothing."""
+    """Whether a multiplier is so near to the circle that counts of multipliers outside are unreliable."""
     return bool(np.any(np.abs(np.abs(engine.spectrum(point.row)) - 1.0) <= within))
 
 
 def at_one(engine: Engine, event: Located) -> bool:
-    """Whether a multiplier is +1 at a point; where an event of a virtual orbit grazes the parameter may turn without."""
+    """Whether a multiplier is +1 at a point. At a fold it is, unless an event of a virtual orbit grazes there."""
     spectrum = engine.spectrum(event.point.row)
     return bool(np.abs(spectrum - 1.0).min(initial=1.0) <= engine.settings.critical)
 
 
 def unresolved(segment: Segment, middle: Solved) -> Located:
-    """A mark in the middle of a segment that is not halved any more, though its ends say more than what is found on it."""
+    """Return a mark in the middle of a segment that is not halved any more although it is inconsistent."""
     ends = (segment.a.p, segment.b.p)
     error = 0.5 * abs(ends[1] - ends[0])
     return Located(0.5, middle, role=Role.UNRESOLVED, error=error, bracket=ends)
 
 
 def leap(segment: Segment, found: list[Located]) -> Located | None:
-    """A mark at the start of the segment if its ends lie on different branches; unresolved if it is too short to tell.
+    """Return a mark at the start of the segment if its ends lie on different branches, an unresolved mark if it is too short to decide, else None.
 
     Parameters
     ----------
     segment : Segment
     found : list of Located
-        What was found on it, in order; positions in [0, 1].
+        Special points found on it, in order; positions in [0, 1].
     """
     stop = next((i for i, e in enumerate(found) if e.ends_branch), len(found))
     short = segment.length <= segment.engine.settings.resolution
@@ -165,7 +182,7 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
 
 
 def inexact(segment: Segment, event: Located) -> bool:
-    """Whether a special point could not be located as well as those are that exist."""
+    """Whether a special point could not be located accurately, a sign that it does not exist."""
     if event.role is Role.UNRESOLVED:
         return False
     unit = segment.engine.parameter_unit(event.point.p)
@@ -174,23 +191,23 @@ def inexact(segment: Segment, event: Located) -> bool:
     solved = segment.engine.settings.exact if scaled and not noise and event.kind == "branch-point" else least
     vague = event.error > 10.0 * least * unit
     if vague and event.kind == "branch-point":
-        # no better than the rounding of its matrix allows
+        # compare with the accuracy that rounding of its matrix allows
         point = event.point
         vague = event.error > singular_within(segment.engine, point.u, point.p, point.tangent)
     if event.astray or vague:
         return True
-    residual = event.point.residual  # sizes are one at least
+    residual = event.point.residual  # engine.size is at least one: it is computed only for a large residual
     return residual > solved and residual > solved * segment.engine.size(event.point.u)
 
 
 def _sign_unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
-    """Whether the sign changes before the branch ends, and nothing was found at which it may."""
+    """Whether the sign of the determinant changes before the branch ends although no branch point or meeting was found."""
     if any(e.kind == "branch-point" or e.role is Role.MEETING for e in found[: stop + 1]):
         return False
     last = segment.b if stop == len(found) else found[stop].point
     if not segment.a.sign * last.sign < 0.0:
         return False
-    # an end may itself be singular (a stick of length zero): its sign is that of roundoff
+    # an end may itself be singular (a stick of duration zero), its sign rounding: compare points beside the ends
     reach = 1.0 if stop == len(found) else found[stop].position
     aside = segment.engine.settings.aside
     beside = segment.several([share * reach for share in (aside, 1.0 - aside)])
@@ -202,12 +219,12 @@ def _sign_unaccounted(segment: Segment, found: list[Located], stop: int) -> bool
 # ------------------------------------------------------------------ the determinant
 @lru_cache(maxsize=64)
 def _side(n: int) -> np.ndarray:
-    """A vector without a pattern."""
+    """Return a fixed random vector, shape (n,)."""
     return np.random.default_rng(7).standard_normal(n)
 
 
 def singular(engine: Engine, point: Solved) -> bool:
-    """Whether [[F_u, F_p], [tangent]] is singular: nearer to a singular matrix than segments are resolved, or the noise of the equations allows."""
+    """Whether [[F_u, F_p], [tangent]] is singular: nearer to a singular matrix than `Settings.resolution`, or than the noise of the equations."""
     engine.residual(point.u, point.p)
     side = np.append(engine.row_sizes * _side(engine.n), 0.0)
     image = engine.apply_inverse(engine.weights * point.tangent, side)
@@ -216,37 +233,37 @@ def singular(engine: Engine, point: Solved) -> bool:
 
 
 def is_astray(segment: Segment, root: Root) -> bool:
-    """Whether the segment has led from one branch to another at a change of the sign, so that there is no branch point."""
+    """Whether a change of the determinant's sign is no branch point: the segment has jumped from one branch to another."""
     engine = segment.engine
     return not (engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point))
 
 
 def alone(engine: Engine, point: Solved) -> bool:
-    """Whether the branch is alone at a point where a multiplier passes +1: the segment has led from one branch to another.
+    """Whether no other branch passes a point with a multiplier +1: the parameter is stationary, but [[F_u, F_p], [tangent]] is regular.
 
-    Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
+    At a branch point this matrix has a null vector besides the tangent.
     """
     stationary = abs(point.tangent[-1]) <= engine.settings.stationary * engine.parameter_unit(point.p)
     return stationary and not singular(engine, point)
 
 
 def turned(a: Solved, b: Solved) -> bool | None:
-    """Whether det(F_u) has another sign at b than at a; None where it is zero at one of them, or has no sign."""
+    """Whether det(F_u) has opposite signs at a and b; None if it is zero at one of them, or its sign is unknown."""
     product = a.sign * a.tangent[-1] * b.sign * b.tangent[-1]
     return bool(product < 0.0) if product else None
 
 
 def passes(segment: Segment, position: float, reach: float | None = None) -> bool:
-    """Whether det(F_u) changes its sign within a reach of a place on a segment, as it does where one eigenvalue vanishes."""
+    """Whether det(F_u) changes its sign within `reach` of a position on a segment, as it does if one eigenvalue vanishes there."""
     reach = segment.engine.settings.aside if reach is None else reach
     sides = segment.several((position - reach, position + reach))
     return sides[0] is not None and sides[1] is not None and turned(sides[0], sides[1]) is not False
 
 
 def certain(engine: Engine, point: Solved) -> bool:
-    """Whether the sign of det [[F_u, F_p], [tangent]] at a point is known in spite of the errors of F_u and F_p.
+    """Whether the sign of det [[F_u, F_p], [tangent]] at a point is certain despite the errors of F_u and F_p.
 
-    True also of problems that do not tell those errors (:class:`contvines.problems.abilities.Doubtful`), or whose matrices are sparse.
+    Returns True for problems that do not estimate these errors (see :class:`contvines.problems.abilities.Doubtful`), or have sparse matrices.
     """
     problem = engine.problem
     if not isinstance(problem, Doubtful):
@@ -269,7 +286,7 @@ def certain(engine: Engine, point: Solved) -> bool:
 
 
 def passes_for_certain(segment: Segment, position: float) -> bool:
-    """Whether a change of the sign within a segment, at a place in [0, 1], is none of rounding: it is known on both sides."""
+    """Whether a change of the determinant's sign at a position in [0, 1] of a segment is not rounding: the sign is certain on both sides."""
     ends = ((segment.a, 0.0), (segment.b, 1.0))
     return all(
         abs(position - s) <= segment.engine.settings.aside or certain(segment.engine, end) for end, s in ends

@@ -1,4 +1,4 @@
-"""Detection: in which segments of a branch may there be special points? Each of them is searched; see :mod:`.segment_search`."""
+"""Detection of special points along a branch: select the segments that may contain some, and search each of them with :mod:`.segment_search`."""
 
 from __future__ import annotations
 
@@ -21,35 +21,40 @@ from .scan import Scan, counts, scanner, turns_round
 from .segment_search import SegmentSearch
 from .settings import LOCATING
 
-BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
-MOST = 0.5  # ... but not more
-NEARER = 0.25  # times that, where its end tells that something is on it
-NEXT = (
-    0.1  # part of the distance from a symmetry's fixed space that a step which ends next to a meeting leaves
-)
+# the segment next to a branch point, whose beginning is not searched because solutions there are nearly singular:
+BESIDE = 0.02  # part of it that is not searched
+MOST = 0.5  # largest part that is not searched
+NEARER = 0.25  # factor by which this part shrinks if the evidence at its end shows a special point on it
+
+NEXT = 0.1  # a step lands next to a meeting if it ends at less than this part of its first distance from the fixed space
 
 
 POSITION = attrgetter("position")
 
 
 class Detector(SegmentSearch):
-    """What to look for along a branch: a search of segments, which is shown those that may hold something."""
+    """Finds the special points along a branch: a search of segments, applied to the segments that may contain special points."""
 
     @cached_property
     def scan(self) -> Callable[[Chunk], Scan]:
-        """One pass over a chunk, for `look`."""
+        """Function that scans a chunk in one pass; `look` needs its result."""
         return scanner(self.engine, self.symmetries)
 
     def look(self, chunk: Chunk, scanned: Scan, real: bool = True) -> list[Located]:
-        """All special points on a chunk, in order; what lies behind a border, a meeting, a leap or a landing is left out.
+        """Return all special points on a chunk, in order, up to the first border, meeting, leap or landing.
 
         Parameters
         ----------
         chunk : Chunk
         scanned : Scan
-            Of the chunk.
+            Scan of the chunk.
         real : bool
-            Whether the branch has positive margins; on a virtual one the return to positive margins is the border.
+            Whether the branch has positive margins; on a virtual branch the return to positive margins is the border.
+
+        Returns
+        -------
+        list of Located
+            Positions count segments of the chunk: index of the point before plus the fraction of the segment.
         """
         if len(chunk) < 2:
             return []
@@ -70,7 +75,7 @@ class Detector(SegmentSearch):
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
         inside[meets] = (
-            False  # a branch that comes back to a symmetry is marginal there: no point to cut it at
+            False  # a branch that returns to a symmetry's fixed space is marginal there; it is not split
         )
         apart = (scanned.reached > 0.0) & (not many) & ~meets
         sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meets
@@ -107,11 +112,11 @@ class Detector(SegmentSearch):
             found = sorted([*found, leaping], key=POSITION) if leaping is not None else found
             found = self._within(segment, found)
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
-            # an interpolated point may lie just outside of its segment
+            # an interpolated point may lie just outside its segment
             found = [_placed(e, i + min(max(e.position, 0.0), 1.0 - EPSILON), bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
             if stop is not None:
-                # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
+                # where a stick or flight vanishes p is stationary: a fold at the border is not a point of its own
                 found = [e for e in found if e is stop or self._apart(e, stop)]
                 events = [e for e in events if self._apart(e, stop)]
             events += before_stop(found)
@@ -122,7 +127,7 @@ class Detector(SegmentSearch):
         return [*events, Located(float(landed), chunk.solved(landed), role=Role.LANDING)]
 
     def _certain(self, segment: Segment, found: list[Located]) -> tuple[list[Located], Located | None]:
-        """What was found, in order, without what is no special point and what may be anywhere in the interval; and whether it tells of a leap."""
+        """Return the special points in order, without spurious ones and those whose error exceeds the interval; and a mark if the ends show a leap."""
         found = sorted(found, key=POSITION)
         leaping, most = leap(segment, found), self.engine.upper - self.engine.lower
         special = [
@@ -131,9 +136,10 @@ class Detector(SegmentSearch):
         return [replace(e, error=max(e.error, e.rounding)) for e in special], leaping
 
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
-        """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
+        """Return the special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
 
-        The beginning of the segment, where every solution is that of a nearly singular system, is left out but where its end tells that something is there.
+        The beginning of the segment is not searched, as solutions there are those of a nearly singular system. It is searched if the evidence at its
+        end shows a special point on it.
         """
         whole, settings = Segment(self.engine, origin, first), self.engine.settings
         share = BESIDE
@@ -156,7 +162,7 @@ class Detector(SegmentSearch):
             split = (beyond - share) / (1.0 - share), seen
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)
         found, leaping = self._certain(segment, found)
-        # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
+        # at the branch point itself the parameter is stationary: on a flat branch rounding imitates folds and branch points next to it
         flat = settings.rounding * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
             _placed(e, share + (1.0 - share) * e.position, (origin.p, first.p))
@@ -168,19 +174,19 @@ class Detector(SegmentSearch):
         return before_stop(found) + ([leaping] if leaping is not None and leaps else [])
 
     def _told(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
-        """Whether the parameter of a point, known to an error and to rounding, is another one than that of a branch point."""
-        if self.engine.adaptive:  # on another mesh the branch begins elsewhere within the error of its origin
+        """Whether the parameter of a point differs from that of a branch point by at least its error and rounding."""
+        if self.engine.adaptive:  # on another mesh the origin itself is shifted, within its error
             error = max(error, rounding_of_parameter(self.engine, point), origin.correction)
         return abs(point.p - origin.p) >= error
 
     def _hides(self, origin: Solved, start: Solved) -> bool:
-        """Whether a point beside a branch point tells that multipliers have passed the circle between both, or that the parameter has turned.
+        """Whether multipliers have crossed the circle, or the parameter has turned, between a branch point and a point beside it.
 
-        No border lies there: first points are brought so near that margins are those of the branch point.
+        Borders need no test: first points are so near that their margins have the signs of the branch point's margins.
         """
         engine, settings = self.engine, self.engine.settings
         unit, gap = engine.parameter_unit(origin.p), engine.join(start.u - origin.u, start.p - origin.p)
-        # away from the branch point: the parameter's direction there, where it has one, its change, and its direction here
+        # three directions of the parameter, away from the branch point: at the branch point, of the chord, and at the start
         away = float(np.sign(engine.inner(origin.tangent, gap))) * float(origin.tangent[-1])
         ways = (
             (away, settings.stationary * unit),
@@ -190,9 +196,10 @@ class Detector(SegmentSearch):
         return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._passed(origin, start)
 
     def _passed(self, origin: Solved, start: Solved) -> bool:
-        """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, those that are critical there left out.
+        """Whether multipliers (eigenvalues) have crossed the circle (the axis) since a branch point, apart from those that are critical there.
 
-        None has if as many are past it as were, up to those that are critical more, and as many of them are pairs, or past -1.
+        None has crossed if the numbers past -1 and of pairs are unchanged, and the total is that of the branch point's other multipliers plus at most
+        the number of critical ones.
         """
         engine = self.engine
         if engine.detection not in ("map", "flow"):
@@ -206,10 +213,11 @@ class Detector(SegmentSearch):
         return before != after or not 0 <= plus + after[0] + 2 * after[1] - others <= int(critical.sum())
 
     def _meetings_and_landings(self, chunk: Chunk, scanned: Scan) -> tuple[np.ndarray, np.ndarray]:
-        """Segments on which the part that a symmetry changes turns round, and those that end next to where it does.
+        """Return two masks of segments, shape (n - 1,): those with a meeting, and those that land next to one.
 
-        A doubled branch that comes back to the fixed space is there as singular as any branch point: the nearer a point, the more of the other
-        branch rounding mixes into its tangent, and what such points say is nothing. A step of another length ends elsewhere.
+        At a meeting the branch crosses the fixed space of a symmetry: the asymmetric part u - T(u) changes its sign. A doubled branch is as singular
+        there as at any branch point. The nearer a point, the more rounding mixes the other branch into its tangent, so that its evidence is
+        useless; the step is repeated with another length.
         """
         meets, lands = (np.zeros(len(scanned.lengths), dtype=bool) for _ in range(2))
         for test, size, turn in zip(self.symmetries, scanned.sizes, scanned.turns):
@@ -223,7 +231,7 @@ class Detector(SegmentSearch):
         return meets, lands
 
     def _closely(self, segment: Segment, real: bool) -> list[Located]:
-        """The special points of a segment of a problem with many unknowns, from eigenvalues."""
+        """Return the special points of a segment of a problem with many unknowns, found from its eigenvalues."""
         search = self._closer
         whole = Segment(search.engine, segment.a, segment.b)
         a, b = whole.at(0.0), whole.at(1.0)
@@ -235,7 +243,7 @@ class Detector(SegmentSearch):
 
     @cached_property
     def _closer(self) -> SegmentSearch:
-        """A search in the same problem, watched by its eigenvalues."""
+        """Search in the same problem, with eigenvalues computed at each point."""
         problem = self.engine.problem
         assert isinstance(problem, Nearing)
         engine = Engine(problem.closer(), self.engine.within, self.engine.settings)
@@ -244,7 +252,7 @@ class Detector(SegmentSearch):
         return search
 
     def _within(self, segment: Segment, events: list[Located]) -> list[Located]:
-        """The events up to where a branch leaves the interval within a segment, turns back outside, and comes in again."""
+        """Cut the events at the parameter bound if the branch leaves the interval within the segment, turns back outside and re-enters."""
         engine = self.engine
         for k, event in enumerate(events):
             bound = min(max(event.point.p, engine.lower), engine.upper)
@@ -259,7 +267,10 @@ class Detector(SegmentSearch):
         return events
 
     def _apart(self, event: Located, stop: Located) -> bool:
-        """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
+        """Whether an event is distinct from the end of the branch nearby.
+
+        Bifurcations, and folds with a multiplier +1, may be nearer to the end than other events.
+        """
         engine, settings = self.engine, self.engine.settings
         own = event.kind not in ("fold", "branch-point") or (
             engine.detection == "map" and at_one(engine, event)
@@ -268,19 +279,19 @@ class Detector(SegmentSearch):
 
 
 def _neighbours(chunk: Chunk, lengths: np.ndarray, i: int) -> list[tuple[float, np.ndarray]]:
-    """The points before and behind segment i of a chunk: their places on it, and their rows."""
+    """Return the points before and behind segment i of a chunk, as (position relative to the segment, row)."""
     before = [(-lengths[i - 1] / lengths[i], chunk.rows[i - 1])] if i > 0 else []
     return before + ([(1.0 + lengths[i + 1] / lengths[i], chunk.rows[i + 2])] if i + 1 < len(lengths) else [])
 
 
 def _placed(event: Located, position: float, bracket: tuple[float, float]) -> Located:
-    """An event at its position, with the bracket in which it was seen; what is unresolved has one of its own."""
+    """Return an event with another position and bracket; unresolved ones keep their bracket."""
     return replace(
         event, position=position, bracket=event.bracket if event.role is Role.UNRESOLVED else bracket
     )
 
 
 def before_stop(events: list[Located]) -> list[Located]:
-    """The events up to the first one at which the branch ends."""
+    """Return the events up to and including the first one at which the branch ends."""
     stop = next((i for i, event in enumerate(events) if event.ends_branch), len(events))
     return events[: stop + 1]

@@ -1,8 +1,9 @@
-"""What points of a branch tell: on which side of special points each of them lies, and how far from these it is.
+"""Evidence: numbers at the points of a branch from which special points between them are detected.
 
-Where a number of `sides` differs at the two ends of a segment, something lies between. Where none does, one of `distances` may come to
-zero between the points and go back: the parabola through three of them says so, and points inside the segment decide. Of multipliers
-:func:`contvines.bifurcation.scan.reached` says it.
+* `sides` are signs and counts. If one of them differs at the two ends of a segment, a special point lies between.
+* `distances` are values of test functions. One of them may reach zero inside a segment and return, with equal signs at both ends: a dip. The
+  parabola through three neighbouring points shows whether a dip is possible; points inside the segment then decide. For multipliers
+  :func:`contvines.bifurcation.scan.reached` does this.
 """
 
 from __future__ import annotations
@@ -18,22 +19,23 @@ from .kind import Own
 from .locate import Segment
 from .scan import Scan, Spectra, balance, parabola_dips, sizes_by_sort, spectra
 
-PLACES, ZOOMS = np.linspace(0.0, 1.0, 9), 8  # where a kink is looked for, and how many times nearer
-AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
+PLACES, ZOOMS = np.linspace(0.0, 1.0, 9), 8  # positions at which a kink is sought; number of zooms towards it
+AHEAD = 1.5  # a straight line continued into a segment must reach zero within this many of its lengths
+EDGE = 0.9  # the same for the first and last segment of a chunk, which have a neighbour on one side only
 
 
 class Evidence(NamedTuple):
-    """Of n points.
+    """Evidence at n points.
 
     Attributes
     ----------
     sides : ndarray of int, shape (n, k)
-        Direction of the parameter, sign of the bordered determinant, numbers of multipliers past the circle, sides of users' tests; 0
-        where nothing tells.
+        Sign of the parameter's component of the tangent, sign of the bordered determinant, numbers of multipliers outside the unit circle, signs of
+        user-defined tests; 0 where a number is only rounding.
     distances : ndarray, shape (n, j)
-        Numbers that pass zero at special points: the parameter's part of the tangent, users' tests, the smallest margin.
+        Numbers that are zero at special points: the parameter's component of the tangent, user-defined tests, the smallest margin.
     margins : ndarray, shape (n, w)
-        All of them, of which the distances follow those in ``distances``.
+        All margins. Columns of `distance` count those of ``distances`` first, then these.
     """
 
     sides: np.ndarray
@@ -42,31 +44,31 @@ class Evidence(NamedTuple):
 
     @property
     def first_margin(self) -> int:
-        """Column of the first margin's distance."""
+        """Column of the first margin, as `distance` counts columns."""
         return self.distances.shape[1]
 
     @property
     def outside(self) -> np.ndarray:
-        """Whether a margin is negative."""
+        """Whether a margin is negative, shape (n,)."""
         return self.distances[:, -1] < 0.0
 
     def distance(self, column: int) -> np.ndarray:
-        """One of the distances, or a margin's, at all points."""
+        """Return a column of ``distances``, or the distance of a margin from its border, at all points, shape (n,)."""
         first = self.first_margin
         return self.distances[:, column] if column < first else self.margins[:, column - first] - MARGIN
 
 
 def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan | None = None) -> Evidence:
-    """What points tell.
+    """Return the evidence at the points of a chunk.
 
     Parameters
     ----------
     engine : Engine
     chunk : Chunk
     tests : sequence of Own
-        Of users.
+        User-defined tests.
     scanned : Scan, optional
-        Of the chunk, where it is known.
+        Scan of the chunk, if it has been computed already.
     """
     rows, slopes = chunk.rows, chunk.tangents[:, -1]
     own = np.array([test.values(chunk) for test in tests]).reshape(len(tests), len(chunk))
@@ -85,7 +87,7 @@ def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan |
 
 
 def filled(sides: np.ndarray) -> np.ndarray:
-    """Sides, shape (n, k), in which a 0 has taken the side of the point before it; at the beginning that of the first point that has one."""
+    """Replace each 0 in `sides`, shape (n, k), by the last nonzero side before it; at the beginning, by the first nonzero side."""
     known = sides != 0
     if known.all():
         return sides
@@ -95,13 +97,14 @@ def filled(sides: np.ndarray) -> np.ndarray:
 
 
 def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
-    """Which distances may come to zero within segments and go back: parabolas through three neighbours of one sign do.
+    """Find the segments on which a distance may dip to zero: the parabola through three neighbouring values of one sign crosses zero.
 
     Returns
     -------
     columns : ndarray of int, shape (j,)
-        All distances but margins', then those of margins for which it is not excluded.
+        Tested columns, as `Evidence.distance` counts them: all of ``distances``, then the margins for which the scan does not exclude a dip.
     found : ndarray of bool, shape (n - 1, j)
+        Whether the distance may dip to zero on the segment.
     """
     first, lengths, low = seen.first_margin, scan.lengths, np.flatnonzero(scan.low)
     columns = np.append(np.arange(first), first + low)
@@ -116,22 +119,28 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
 
 
 def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments with equal signs at both ends in which distances, continued from before and from behind in straight lines, reach zero.
+    """Find the segments with equal signs at both ends in which straight lines through the neighbouring values, from both sides, reach zero.
 
-    Two eigenvalues may pass zero there at once; of problems with many unknowns only the nearest one is known along the branch.
+    Two eigenvalues may cross zero there at once; for problems with many unknowns only the eigenvalue nearest to zero is known along the branch.
 
     Parameters
     ----------
     distances : ndarray, shape (n,)
-        Positive.
+        Positive distances of the nearest multiplier or eigenvalue.
     signs : ndarray, shape (n,)
+        Signs of the bordered determinant.
     lengths : ndarray, shape (n - 1,)
+        Lengths of the segments.
+
+    Returns
+    -------
+    ndarray of bool, shape (n - 1,)
     """
     changes = np.diff(distances)
     with np.errstate(all="ignore"):
         ahead = np.where(changes < 0.0, -distances[1:] / changes, np.inf) * lengths
         back = np.where(changes > 0.0, distances[:-1] / changes, np.inf) * lengths
-    # at the ends of a chunk there is only one side to tell: its zero has to lie well inside
+    # the first and the last segment of a chunk have one neighbour only: its line must reach zero well inside
     before, behind = np.append(np.inf, ahead[:-1]) / lengths, np.append(back[1:], np.inf) / lengths
     inside = (before < AHEAD) & (behind < AHEAD)
     if len(lengths) > 1:
@@ -140,17 +149,18 @@ def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np
 
 
 def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
-    """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,); of a single one nothing is known.
+    """Find the segments of a virtual branch that may be real inside although both ends are virtual, shape (n - 1,); a single segment always may.
 
-    A margin that is negative at both ends may be positive in between where the lines through the two points before and through
-    the two behind are, which lie above it wherever it bends downwards, or is a roof, as the reserve of friction is.
+    A margin that is negative at both ends can be positive between only where two straight lines are positive: through the two points before the
+    segment and through the two points behind it. The margin lies below these lines if it bends downwards, or is shaped like a roof (the
+    reserve of friction).
     """
     margins, lengths = seen.margins - MARGIN, lengths[:, None]
     kept = (margins[:-1] < 0.0) & (margins[1:] < 0.0)
     rises, falls = (
         np.full(kept.shape, np.inf),
         np.full(kept.shape, -np.inf),
-    )  # from where to where on a segment
+    )  # the interval of the segment in which both lines are positive
     if len(lengths) > 1:
         rises[0], falls[-1] = 0.0, lengths[-1]
         with np.errstate(all="ignore"):
@@ -163,9 +173,9 @@ def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
 
 # ------------------------------------------------------------------ kinks
 def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) -> np.ndarray:
-    """Distance of the real multiplier nearest to +1 (of eigenvalues: to zero, pairs included, which pass the axis elsewhere), shape (n,).
+    """Return the distance of the real multiplier nearest to +1 (of eigenvalues: nearest to zero, complex pairs included), shape (n,).
 
-    Of points whose multipliers are known to tell something it need not be computed again; on the circle it is NaN there.
+    `spectra` of the same rows saves the computation; it is NaN for a multiplier on the circle to rounding.
     """
     if engine.many:
         return -rows[:, 0]
@@ -180,13 +190,14 @@ def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) ->
 
 
 def kinked(segment: Segment) -> bool:
-    """Whether the real multiplier nearest to the circle has a kink there within a segment: looked at nearer, its sides stay as steep.
+    """Whether the distance of the nearest real multiplier from the circle has a kink at zero within a segment: its sides stay as steep at every zoom.
 
-    Along a branch a multiplier that touches the circle does so as a parabola. Where it falls to nothing in a straight line, and no count
-    changes, a step has led from one branch to another through the point in which they cross: both are unstable alike, and where unknowns of
-    very different sizes hide the corner the rule of the loop, which compares tangents, sees none (x (2 p + 3 x^2 + 3) = 0 behind unknowns
+    On one branch a multiplier touches the circle along a parabola. If its distance falls to zero in a straight line and no count changes, a step
+    has jumped from one branch to another through the point where they cross. Both branches have equally many unstable multipliers, and unknowns of
+    very different sizes can hide the corner from the step rule, which compares tangents (example: x (2 p + 3 x^2 + 3) = 0 beside unknowns
     hundreds of times as large).
-    Of cycles on a mesh nothing is told where both ends are next to the circle, as where a branch turns round at a cycle of half the period.
+
+    Returns False for cycles on a mesh if both ends are next to the circle, for example where a branch turns round at a cycle of half the period.
     """
     engine, low, high, first = segment.engine, 0.0, 1.0, 0.0
     for zoom in range(ZOOMS):
@@ -202,7 +213,7 @@ def kinked(segment: Segment) -> bool:
             return False
         if zoom == 0:
             if engine.adaptive and max(near[0], near[-1]) <= engine.settings.critical:
-                return False  # kinks are those of rounding
+                return False  # a kink could be rounding
             first = steepness
         elif steepness < engine.settings.steep * first:
             return False

@@ -1,6 +1,6 @@
-"""Kind: what a special point is called and drawn as, and how it is found, verified, classified and followed. Built-in kinds and users' own.
+"""Kind: a kind of special point, built-in or user-defined: its name and marker, and how its points are found, verified, classified and followed.
 
-Users' functions see a `Point`; what they return that is no answer is refused in a sentence.
+The functions of a user-defined kind receive a `Point`; a return value of a wrong type raises a ValueError that names the kind and the function.
 """
 
 from __future__ import annotations
@@ -27,29 +27,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Test:
-    """A test function that passes zero on a segment.
+    """A test function that changes its sign on a segment.
 
     Attributes
     ----------
     function : Aim or callable
-        Number of a solved point.
+        Value of the test function at a solved point.
     index : int
-        Rank of a multiplier among those of its sort, or which margin.
+        Rank of the multiplier among those of its sort, or index of the margin.
     jump : float
-        The zero is given up where the function changes by more than this over a small part of the segment.
+        The zero is rejected as a jump if the function changes by more than this over a small part of the segment.
     """
 
-    __test__ = False  # no test of pytest's
+    __test__ = False  # pytest must not collect this class
     function: Aim | Callable[[Solved], float]
     index: int = 0
     jump: float = float("inf")
 
 
-JUMP = 0.05  # change of a multiplier's logarithm over a small part of a segment: it has come from elsewhere
+JUMP = 0.05  # change of a multiplier's logarithm over a small part of a segment from which it counts as a jump: another multiplier has taken its rank
 
 
 def passing(segment: Segment, sort: str) -> list[Test]:
-    """One test for each multiplier of a sort ("plus", "minus", "pair") that is past the circle at one end only."""
+    """Return one test for each multiplier of a sort ("plus", "minus", "pair") that is outside the unit circle at one end only."""
     engine, place = segment.engine, tuple(SORTS).index(sort)
     one, other = segment.counts[0][place], segment.counts[1][place]
     return [
@@ -59,7 +59,7 @@ def passing(segment: Segment, sort: str) -> list[Test]:
 
 
 class Classified(NamedTuple):
-    """Normal form of a special point: which side, the coefficient (a number, or a function that computes it when asked), remarks."""
+    """Normal form of a special point: criticality, coefficient (a number, or a function that computes it when needed), and remarks."""
 
     criticality: str | None = None
     coefficient: float | Callable[[], float | None] | None = None
@@ -67,12 +67,12 @@ class Classified(NamedTuple):
 
 
 Sides = tuple[str | None, float | None]
-"""What a user's kind may return in the place of `Classified`: criticality and coefficient."""
+"""Result of `classify` of a user-defined kind, instead of `Classified`: criticality and coefficient."""
 SIDES = ("supercritical", "subcritical", None)
 NAME = re.compile(r"[a-z][a-z0-9-]*")
 LABEL = re.compile(r"[A-Z][A-Z0-9]*")
 MARKERS = tuple("*os^vDpdhHPXx+|<>8.,1234_")
-"""As matplotlib calls them."""
+"""Markers as matplotlib names them."""
 
 
 @hinted
@@ -80,40 +80,42 @@ MARKERS = tuple("*os^vDpdhHPXx+|<>8.,1234_")
 class Kind:
     """A kind of special point.
 
-    Along a branch the test function is evaluated at every point. Where it changes its sign between two points, or the parabola through
-    three values passes zero, its zero is located by a safeguarded secant on the branch, verified, labelled and classified.
+    The test function is evaluated at every point of a branch. If it changes its sign between two points, or the parabola through
+    three values crosses zero, a safeguarded secant method locates the zero on the branch; it is then verified, labelled and classified.
 
     Parameters
     ----------
     name : str
-        As in files, JSON and :meth:`contvines.Graph.of_kind`: small letters, digits and hyphens.
+        Name in files, JSON and :meth:`contvines.Graph.of_kind`: small letters, digits and hyphens.
     label : str
-        What labels begin with: capital letters, as ``LP`` of LP1, LP2 ...
+        Prefix of the labels: capital letters, as ``LP`` of LP1, LP2 ...
     test : callable, optional
-        point -> float, zero at the special point and changing its sign there with a slope that is not zero. The point is a
+        point -> float: zero at the special point, with a change of sign and a nonzero slope. The point is a
         ``PointOnBranch``: ``point.u``, ``point.value``, ``point.parameters``,
         ``point.multipliers``, ``point.margins``, ``point.jacobian``, ``point.tangent``, ``point.measure(name)``.
     text : str
-        For people; by default the name without hyphens.
+        Name shown in tables and legends; by default the name without hyphens.
     marker : str
-        In pictures, as matplotlib calls it: one of ``* o s ^ v D p d h H P X x + | < > 8 . , 1 2 3 4 _``.
+        Marker in pictures, as matplotlib names it: one of ``* o s ^ v D p d h H P X x + | < > 8 . , 1 2 3 4 _``.
     filled : bool
+        Whether the marker is filled.
     verify : callable, optional
-        point -> True or False: whether a located zero is of this kind, as where the sign of another number decides.
+        point -> True or False: whether a located zero is of this kind, for example if the sign of another number decides.
     classify : callable, optional
         point -> (criticality, coefficient): "supercritical", "subcritical" or None, and a number or None.
     locus : callable, optional
         point -> float: the condition that ``contvines.locus`` adds to the equations, often the test itself. Its point has no tangent.
     ends : bool
-        Branches end there.
+        Whether branches end at these points.
     border, tests, find, leaves, nothing, without
-        Of built-in kinds: what one test function does not tell, and sentences for where nothing leaves.
+        Used by built-in kinds only: searches that one test function cannot express, and sentences for points that no branch leaves.
 
     Raises
     ------
     ValueError
-        If the name, the label or the marker cannot be used, or ``test``, ``verify``, ``classify`` or ``locus`` is no function. While a
-        diagram is made: if one of them fails or returns something else than it should, but NaN, with which a test says nothing.
+        If the name, the label or the marker is invalid, or ``test``, ``verify``, ``classify`` or ``locus`` is not callable. Also during
+        the computation of a diagram, if one of these functions fails or returns a value of a wrong type. A test may return NaN at points where it
+        is not defined.
     """
 
     name: str
@@ -126,15 +128,15 @@ class Kind:
     classify: Callable[[PointOnBranch], Classified | Sides] | None = None
     locus: Callable[[Point], float] | str | None = None
     ends: bool = False
-    # of built-in kinds
-    border: bool = False  # a margin vanishes there, and a branch ends
-    tests: Callable[[Segment], list[Test]] | None = None  # several test functions
-    find: Callable[[Segment, Sequence[Located]], list[Located]] | None = None  # in the place of tests
+    # of built-in kinds only
+    border: bool = False  # a margin vanishes at these points, and branches end there
+    tests: Callable[[Segment], list[Test]] | None = None  # the test functions that change sign on a segment
+    find: Callable[[Segment, Sequence[Located]], list[Located]] | None = None  # own search, instead of tests
     leaves: str = (
         ""  # "branch", "doubled", "cycles", "circle" or "beyond": see contvines.graph.schedule_branches
     )
-    nothing: str = ""  # a sentence where no branch leaves
-    without: str = ""  # a sentence where a branch leaves for which the problem has no equations
+    nothing: str = ""  # sentence for the user: no branch leaves points of this kind
+    without: str = ""  # sentence for the user: a branch leaves, but the problem has no equations for it
 
     def __post_init__(self) -> None:
         if not (isinstance(self.name, str) and NAME.fullmatch(self.name)):
@@ -157,7 +159,7 @@ class Kind:
             object.__setattr__(self, "text", self.name.replace("-", " "))
 
     def look(self) -> dict[str, str | bool]:
-        """Label, text and mark as JSON scalars: what files keep of a user's kind."""
+        """Return name, label, text and marker as JSON scalars; files store these of a user-defined kind."""
         return {
             "name": self.name,
             "label": self.label,
@@ -167,9 +169,9 @@ class Kind:
         }
 
 
-# ------------------------------------------------------------------ what the functions of a kind see
+# ------------------------------------------------------------------ argument of the functions of a kind
 class Point(Protocol):
-    """What the functions of a kind may ask of a point, on a branch or on a locus; see `PointOnBranch`."""
+    """Argument of the functions of a kind: a point of a branch or of a locus; see `PointOnBranch`."""
 
     @property
     def u(self) -> np.ndarray: ...
@@ -191,15 +193,16 @@ class Point(Protocol):
 
 
 class PointOnBranch:
-    """A point of a branch; what takes time is computed when it is asked for.
+    """A point of a branch, as the functions of a kind receive it; expensive properties are computed at first use.
 
     Attributes
     ----------
     u : ndarray, shape (N,)
+        Unknowns.
     value : float
-        Of the parameter.
+        Parameter value.
     tangent : ndarray, shape (N + 1,)
-        Unit tangent of the branch, its last entry that of the parameter.
+        Unit tangent of the branch; the parameter's component is last.
     problem : Problem
     """
 
@@ -209,22 +212,22 @@ class PointOnBranch:
 
     @property
     def place(self) -> dict[str, float]:
-        """The varying parameter by its name."""
+        """The varying parameter: name -> value."""
         return {self.problem.parameter: self.value}
 
     @property
     def parameters(self) -> dict[str, float]:
-        """All parameters by name, the varying one included."""
+        """All parameters: name -> value, the varying one included."""
         return {**self.problem.parameters, **self.place}
 
     @cached_property
     def multipliers(self) -> np.ndarray:
-        """Of the full period (eigenvalues for flows), complex."""
+        """Complex multipliers of the full period (eigenvalues for flows)."""
         return self.engine.multipliers(self.solved.row)
 
     @property
     def margins(self) -> np.ndarray:
-        """Distances from borders, positive on a real solution; +inf where one does not apply."""
+        """Margins: distances from borders, all positive on a real solution; +inf for a margin that does not apply."""
         return self.engine.margins(self.solved.row)
 
     @cached_property
@@ -237,20 +240,20 @@ class PointOnBranch:
         return np.array(kernels.matrix(self.problem.data, engine.work))
 
     def measure(self, name: str) -> float:
-        """A measure of the solution by its name."""
+        """Return a measure of the solution by its name."""
         if name == self.problem.parameter:
             return self.value
         return float(self.problem.measures((name,), self.u[None, :], np.array([self.value]))[name][0])
 
 
-# ------------------------------------------------------------------ what they answer
+# ------------------------------------------------------------------ checked results of the functions of a kind
 def number_of(kind: Kind, role: str, point: Point) -> float:
-    """The "test" or the condition ("locus") of a kind at a point; NaN where arithmetic fails.
+    """Return the value of a kind's "test" or condition ("locus") at a point; NaN if its arithmetic fails.
 
     Raises
     ------
     ValueError
-        If it fails for a reason of its own, or returns no real number.
+        If the function raises another error, or does not return a real number.
     """
     try:
         found = _answer(kind, role, point)
@@ -263,12 +266,12 @@ def number_of(kind: Kind, role: str, point: Point) -> float:
 
 
 def verified(kind: Kind, point: Point) -> bool:
-    """Whether a located zero is of the kind.
+    """Whether a located zero is of the kind: the result of its `verify`, True without one.
 
     Raises
     ------
     ValueError
-        If `verify` of a user's kind fails, or returns neither True nor False.
+        If `verify` of a user-defined kind fails, or returns neither True nor False.
     """
     if kind.verify is None:
         return True
@@ -281,12 +284,12 @@ def verified(kind: Kind, point: Point) -> bool:
 
 
 def classified(kind: Kind, point: PointOnBranch) -> Classified:
-    """The normal form of a special point.
+    """Return the normal form of a special point: the result of its kind's `classify`, empty without one.
 
     Raises
     ------
     ValueError
-        If `classify` of a user's kind fails, or returns no pair of criticality and coefficient.
+        If `classify` of a user-defined kind fails, or does not return a pair (criticality, coefficient).
     """
     if kind.classify is None:
         return Classified()
@@ -303,6 +306,7 @@ def classified(kind: Kind, point: PointOnBranch) -> Classified:
 
 
 def _answer(kind: Kind, role: str, point: Point) -> Any:
+    """Call one of a kind's functions at a point; errors but those of arithmetic become a ValueError that names kind, function and place."""
     try:
         return getattr(kind, role)(point)
     except Exception as error:
@@ -322,13 +326,25 @@ def _place(point: Point) -> str:
     return ", ".join(f"{name} = {value:.10g}" for name, value in point.place.items())
 
 
-# ------------------------------------------------------------------ tests of users along a branch
+# ------------------------------------------------------------------ user-defined tests along a branch
 UserFunction = Callable[[np.ndarray, float], float] | tuple[str, float]
-"""A number of a solution (u, p), or a measure by name and the value at which it is asked for."""
+"""A function of a solution (u, p), or a pair (measure, value): the test is the measure minus this value."""
 
 
 class Own(NamedTuple):
-    """A kind of the user's with the name of the function, its test at one point, and, of a function, at many points u at values p."""
+    """A user-defined test along a branch.
+
+    Attributes
+    ----------
+    kind : Kind
+        Kind of its zeros.
+    name : str
+        Name of the user function; empty for the test of a kind.
+    at : callable
+        Its value at one point.
+    many : callable, optional
+        Its values at many points: unknowns, shape (n, N), and parameter values, shape (n,), -> values, shape (n,).
+    """
 
     kind: Kind
     name: str
@@ -336,7 +352,7 @@ class Own(NamedTuple):
     many: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
 
     def values(self, chunk: Chunk) -> np.ndarray:
-        """The test at all points of a chunk."""
+        """Return the test's values at all points of a chunk, shape (n,)."""
         if self.many is None:
             return np.array([self.at(chunk.solved(i)) for i in range(len(chunk))])
         return np.asarray(self.many(chunk.points, chunk.values), dtype=float)
@@ -349,7 +365,20 @@ def own_tests(
     stops: Iterable[str],
     user: Kind,
 ) -> list[Own]:
-    """Tests of the kinds that have one, and of functions by name (kind `user`); branches end at zeros of those named in `stops`."""
+    """Return the user-defined tests of an engine's problem.
+
+    Parameters
+    ----------
+    engine : Engine
+    kinds : iterable of Kind
+        Each kind with a `test` gives one.
+    functions : mapping of str to UserFunction
+        User functions by name.
+    stops : iterable of str
+        Names of the functions at whose zeros branches end.
+    user : Kind
+        Kind of the zeros of the functions.
+    """
 
     def of_kind(kind: Kind, point: Solved) -> float:
         return number_of(kind, "test", PointOnBranch(engine, point))
@@ -365,6 +394,7 @@ def own_tests(
 
 
 def _many(problem: Problem, function: UserFunction) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """Return the user function for many points at once: unknowns, shape (n, N), and parameter values, shape (n,), -> values, shape (n,)."""
     if callable(function):
         return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
     try:

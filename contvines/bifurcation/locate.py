@@ -1,4 +1,4 @@
-"""Segments between neighbouring points of a branch: any point of one can be solved; locating a special point there, and what was found."""
+"""Segment: the part of a branch between two neighbouring points, on which any point can be solved; location of special points on it."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from ..shared.numbers import EPSILON, ROUNDED
 from .scan import counts
 from .settings import LOCATING
 
-NODES = 8
-NARROWER = 0.5 ** np.arange(7)  # windows that are tried, in units of the first one, ...
-WIDER = 2.0 ** np.arange(1, 6)  # ... and where that is too narrow
-NOWHERE = (math.nan, math.nan)  # a bracket that is not known yet
-FAR = 3.0  # decades between a multiplier and the circle
+NODES = 8  # Chebyshev nodes of an interpolation beside a branch point
+NARROWER = 0.5 ** np.arange(7)  # widths of the windows that are tried, relative to the first one
+WIDER = 2.0 ** np.arange(1, 6)  # further widths, for short segments on which rounding dominates
+NOWHERE = (math.nan, math.nan)  # bracket that is not known yet
+FAR = 3.0  # decades between |multiplier| and 1 from which a multiplier is certainly not near the circle
 
 
 class Segment:
-    """Points between a and b: s in [0, 1] measures along the chord.
+    """The part of a branch between points a and b; the position s in [0, 1] is measured along the chord.
 
     Parameters
     ----------
     engine : Engine
     a, b : Solved
-        Their tangents make an angle of less than a right angle with the chord.
+        Ends. Their tangents make an angle of less than 90 degrees with the chord.
     turns : bool
-        A fold has been found on a segment of which this is a part: signs of the parameter's part of the tangent tell folds, however small it is, so
-        that as many are found on all parts together.
+        This is a part of a segment on which a fold has been found. A change of sign of the parameter's component of the tangent then counts as a fold
+        however small the component is, so that all parts together have as many folds.
     """
 
     def __init__(self, engine: Engine, a: Solved, b: Solved, turns: bool = False) -> None:
@@ -53,7 +53,7 @@ class Segment:
         self.length = engine.norm(chord)
         self.direction = chord / self.length if self.length > 0.0 else a.tangent
         if read is not None:
-            begin = end = self.direction  # tangents tell how meshes move that are not one
+            begin = end = self.direction  # tangents of different meshes cannot be compared
         turn = begin - end
         self.border = engine.weights * self.direction
         arc = self.length * (1.0 + engine.inner(turn, turn) / 24.0)
@@ -63,14 +63,16 @@ class Segment:
 
     @cached_property
     def counts(self) -> tuple[list[int], list[int]]:
-        """Multipliers past the circle at both ends: real ones past 1, past -1, and complex pairs."""
+        """Numbers of multipliers outside the circle at both ends, each as [real ones past 1, real ones past -1, complex pairs]."""
         engine = self.engine
         before, after = counts(engine, np.array([self.a.row, self.b.row])).tolist()
         return (before, before) if engine.adaptive and self._far_from_circle() else (before, after)
 
     def _far_from_circle(self) -> bool:
-        """Whether as many multipliers are outside the circle at both ends, and all of them so far from it that none has passed it: beside a
-        homoclinic orbit they turn round zero."""
+        """Whether equally many multipliers are outside the circle at both ends, and all are so far from the circle that none has crossed it.
+
+        Beside a homoclinic orbit multipliers go round zero, and change their sort without crossing the circle.
+        """
         sizes = np.abs(self.engine.spectrum(np.array([self.a.row, self.b.row])))
         with np.errstate(all="ignore"):
             logs = np.abs(np.log10(sizes))
@@ -78,27 +80,27 @@ class Segment:
         return bool((logs > FAR).all() and outside[0] == outside[1])
 
     def through_infinity(self) -> bool:
-        """Whether the outermost multipliers of both ends are real, of opposite signs, and so large that one has come back from infinity."""
+        """Whether the largest multipliers of both ends are real, of opposite signs, and so large that one has passed through infinity."""
         spectra = self.engine.spectrum(np.array([self.a.row, self.b.row]))
         one, other = spectra[(0, 1), np.abs(spectra).argmax(axis=1)]
         far = min(abs(one), abs(other)) > 10.0**FAR and one.imag == other.imag == 0.0
         return bool(far and one.real * other.real < 0.0)
 
     def at(self, s: float) -> Solved | None:
-        """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
+        """Return the point of the branch at s, solved to rounding; None if it cannot be solved or belongs to another branch."""
         return solved_point(self.found((s,)), 0)
 
     def several(self, places: Sequence[float] | np.ndarray) -> list[Solved | None]:
-        """The points of the branch at some places, each as by `at`."""
+        """Return the points of the branch at some positions, each as by `at`."""
         return solved_points(self.found(places))
 
     def rows(self, places: Sequence[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rows of multipliers and margins at some places, (k, columns), and which of them are of points of the branch, (k,)."""
+        """Return rows of multipliers and margins at k positions, shape (k, columns), and whether each point was solved, shape (k,)."""
         found = self.found(places)
         return found.rows, found.numbers[:, 1] >= 0.0
 
     def found(self, places: Sequence[float] | np.ndarray) -> Found:
-        """All that is found at some places, as arrays."""
+        """Return the points at some positions as arrays."""
         return self.engine.on_chord(self.way, np.array(places, dtype=float))
 
 
@@ -113,7 +115,7 @@ class Root(NamedTuple):
     error : float
         Estimated error of the parameter value.
     continuous : bool
-        False: the test function jumps over zero.
+        False if the test function jumps over zero.
     """
 
     position: float
@@ -123,42 +125,43 @@ class Root(NamedTuple):
 
 
 class Role(StrEnum):
-    """What a located point means for following the branch."""
+    """Role of a located point in the continuation of its branch."""
 
     SPECIAL = "special"  # a special point of the branch
     BORDER = "border"  # a margin vanishes: the branch ends
-    MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
-    STOP = "stop"  # a function at whose zeros the user wants branches to end
-    LEFT = "left"  # the branch leaves the interval between two points that lie in it
-    UNRESOLVED = "unresolved"  # both ends of a segment, which is not halved any more, do not agree with what was found between
-    PLAIN = "plain"  # just a point between two special points
-    LEAP = "leap"  # the point before a step to another branch: to be traced again with shorter ones
-    LANDING = "landing"  # the same, before a step that ends next to a meeting: with another one
+    MEETING = "meeting"  # the branch returns to the fixed space of a symmetry, and ends
+    STOP = "stop"  # zero of a user function at which branches shall end
+    LEFT = "left"  # the branch leaves the parameter interval between two points inside it
+    UNRESOLVED = "unresolved"  # the ends of a segment, which is not halved any more, disagree with the special points found on it
+    PLAIN = "plain"  # an ordinary point between two special points
+    LEAP = "leap"  # the point before a step that jumped to another branch: trace again with shorter steps
+    LANDING = "landing"  # the point before a step that ended next to a meeting: repeat it with another length
 
 
 @dataclass(frozen=True, eq=False)
 class Located:
-    """A point that was located on a chunk, or on a segment that nobody has put on its branch yet.
+    """A point located on a chunk or a segment.
 
     Attributes
     ----------
     position : float
-        Index of the point before it plus the fraction of the segment.
+        On a segment: s in [0, 1]. On a chunk: index of the point before it plus s.
     point : Solved
     kind : str
-        See :mod:`contvines.bifurcation.kinds`; of a meeting that of the symmetry. Empty for a plain point, a leap, a landing and where the interval is left.
+        Name of the kind, see :mod:`contvines.bifurcation.kinds`; for a meeting the kind of the symmetry. Empty for the roles PLAIN, LEAP, LANDING and LEFT.
     index : int
-        Which multiplier, margin, symmetry or user function.
+        Index of the multiplier, margin, symmetry or user function.
     role : Role
     error : float
         Estimated error of the parameter value.
     bracket : (float, float)
+        Parameter values at the ends of the segment.
     name : str
-        Of the user function.
+        Name of the user function.
     rounding : float
-        Of a border, how far rounding of its margins may move the parameter value: no sign of a leap, but part of the error.
+        For a border: by how much rounding of its margins may move the parameter value. Part of the final error, but no sign of a leap.
     astray : bool
-        It is no special point: the segment has led from one branch to another.
+        True if this is no special point: the segment has jumped from one branch to another.
     """
 
     position: float
@@ -176,12 +179,12 @@ class Located:
     def at(
         cls, root: Root, kind: str, index: int = 0, role: Role = Role.SPECIAL, astray: bool = False
     ) -> Located:
-        """What a located zero is."""
+        """Return the located point for a zero of a test function."""
         return cls(root.position, root.point, "" if astray else kind, index, role, root.error, astray=astray)
 
     @property
     def ends_branch(self) -> bool:
-        """Whether what lies behind it is left out."""
+        """Whether the branch ends at this point."""
         return self.role in (Role.BORDER, Role.MEETING, Role.STOP, Role.LEFT)
 
 
@@ -191,17 +194,17 @@ def locate(
     tolerance: float = LOCATING.bracket,
     jump: float = np.inf,
 ) -> Root | None:
-    """The zero of a test function whose bordered system is regular there.
+    """Locate the zero of a test function on a segment whose bordered system is regular there.
 
     Parameters
     ----------
     segment : Segment
     test : Aim or callable
-        Of opposite signs at the two ends; a callable is Solved -> float.
+        Test function Solved -> float, with opposite signs at the two ends.
     tolerance : float
         Width of the final bracket relative to the segment.
     jump : float
-        A test that changes by more than this over a tiny part of the segment jumps; the root is then not continuous.
+        A test that changes by more than this over a tiny part of the segment counts as a jump; the root is then not continuous.
 
     Returns
     -------
@@ -214,7 +217,7 @@ def locate(
             return None
         if hit.point is not None:
             return Root(hit.place, hit.point, hit.error, hit.jump <= LOCATING.jump)
-        # a place that was solved for once and is not found again, as where equations are singular: every point is kept below
+        # the zero could not be solved for again, as where equations are singular; the search below stores every point
     solved: dict[float, Solved] = {}
 
     def value(s: float) -> float:
@@ -242,18 +245,18 @@ def bracketed_root(
     tolerance: float = ROUNDED,
     jump: float = np.inf,
 ) -> tuple[float, float, float, float, float]:
-    """Root of f between a and b; see :mod:`contvines.continuation.bracketing`.
+    """Find a root of f between a and b; see :mod:`contvines.continuation.bracketing`.
 
     Parameters
     ----------
     f : callable
-        May return NaN where it cannot be evaluated; such a point is replaced by one nearby.
+        May return NaN where it cannot be evaluated; a point nearby is then tried.
     a, b, fa, fb : float
-        Bracket, fa and fb of opposite sign (or one of them zero).
+        Bracket, and the values there: of opposite signs, or one of them zero.
     tolerance : float
         Width of the final bracket relative to the first one.
     jump : float
-        Give up where f still changes by more than this over a bracket of 1e-5 of the first one: f has a jump there.
+        Stop if f still changes by more than this over a bracket of 1e-5 of the first one: f has a jump there.
 
     Returns
     -------
@@ -268,27 +271,27 @@ def bracketed_root(
     return bracket.best, low, high, flow, fhigh
 
 
-# ------------------------------------------------------------------ where the bordered system is singular
+# ------------------------------------------------------------------ location at points with a singular bordered system
 @cache
 def chebyshev_nodes(n: int) -> np.ndarray:
-    """The n roots of the Chebyshev polynomial T_n, none of them 0 for even n."""
+    """Return the n roots of the Chebyshev polynomial T_n; for even n none of them is 0."""
     return np.cos((2.0 * np.arange(n) + 1.0) * np.pi / (2 * n))
 
 
 @cache
 def chebyshev_series(n: int) -> np.ndarray:
-    """What makes of values at ``chebyshev_nodes(n)`` the coefficients of the Chebyshev series through them, shape (n, n)."""
+    """Return the matrix, shape (n, n), that maps values at ``chebyshev_nodes(n)`` to the coefficients of the Chebyshev series through them."""
     return np.linalg.inv(chebvander(chebyshev_nodes(n), n - 1))
 
 
 def locate_singular(
     segment: Segment, test: Callable[[Solved], float], rough: float, width: float = 0.2
 ) -> Root | None:
-    """The zero of a test function at a branch point, where the bordered system is singular.
+    """Locate the zero of a test function at a branch point, where the bordered system is singular.
 
-    Newton's method loses digits near such a point, so the branch is solved at Chebyshev nodes beside it, and the point and
-    the test function are interpolated. The interpolation converges like (width/2)^8. Narrower windows are tried, too, and on a segment that is so
-    short that the point would be known to fewer digits than are asked for, wider ones, which reach out to both sides.
+    Newton's method loses digits near a branch point. The branch is therefore solved at Chebyshev nodes on both sides of it, and the point and
+    the test function are interpolated; the interpolation converges like (width/2)^8. Narrower windows are tried, too. If the segment is so short
+    that the result is less accurate than `Settings.located`, wider windows are tried, which reach beyond the segment.
 
     Parameters
     ----------
@@ -297,7 +300,12 @@ def locate_singular(
     rough : float
         Approximate position.
     width : float
-        Half of the first window, relative to the segment.
+        Half width of the first window, relative to the segment.
+
+    Returns
+    -------
+    Root or None
+        None if no window contains a zero or its nodes cannot be solved.
     """
     engine = segment.engine
     roots = _in_windows(segment, test, rough, width * NARROWER)
@@ -305,12 +313,12 @@ def locate_singular(
         return None
     best = min(roots, key=itemgetter(0))[1]
     if best.error > engine.settings.located * engine.parameter_unit(best.point.p):
-        # the segment is so short that rounding rules all over it, and less so on either side
+        # the segment is so short that rounding dominates on all of it; nodes beyond its ends are better
         roots += _in_windows(segment, test, best.position, width * WIDER)
     roots.sort(key=itemgetter(0))
     best = roots[0][1]
     if len(roots) > 1 and engine.problem.scales is not None:
-        # rounding rules in all windows, and the smallest of their estimates is small by chance
+        # rounding dominates in all windows, and the smallest of their error estimates is small by chance
         apart = abs(roots[1][1].point.p - best.point.p)
         return best._replace(error=2.0 * max(best.error, roots[1][1].error, apart))
     return best
@@ -319,7 +327,7 @@ def locate_singular(
 def _in_windows(
     segment: Segment, test: Callable[[Solved], float], rough: float, widths: np.ndarray
 ) -> list[tuple[float, Root]]:
-    """Roots with what they are wrong by, from windows of such widths, until rounding makes them worse."""
+    """Return (estimated error, root) from windows of the given half widths, until rounding makes the roots worse."""
     roots: list[tuple[float, Root]] = []
     for width in widths.tolist():
         root = _interpolated(segment, test, rough, width)
@@ -336,6 +344,7 @@ def _in_windows(
 def _interpolated(
     segment: Segment, test: Callable[[Solved], float], rough: float, width: float
 ) -> Root | None:
+    """Return the root by interpolation from the nodes of one window, or None."""
     engine, nodes, values = segment.engine, chebyshev_nodes(NODES), np.empty(NODES)
     points = [point for point in segment.several(rough + width * nodes) if point is not None]
     if len(points) < NODES:

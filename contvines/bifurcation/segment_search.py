@@ -1,4 +1,8 @@
-"""The special points of one segment of a branch: all kinds are asked in one loop, and what they find is checked for consistency."""
+"""Search for the special points of one segment of a branch: each kind is searched in turn, and the result is checked for consistency.
+
+"Evidence" is defined in :mod:`.evidence`. A segment is split at a point inside it whose evidence differs from that of both ends; such a point
+separates two special points that the ends alone do not show.
+"""
 
 from __future__ import annotations
 
@@ -22,18 +26,18 @@ from .location_error import blurred
 from .scan import SymmetryTest, parabola_dips, reached, turns_round
 from .settings import LIMITS
 
-PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
-NARROWER = 3  # times that a distance is looked at nearer, at places eight times as dense each time, ...
-HALVINGS = 9  # ... times that parts are halved on which a multiplier may reach the circle, ...
-ROOF = 12  # ... and times that the smallest margin, which may be a roof, is looked at nearer
+PLACES = np.arange(1, 8) / 8.0  # positions at which the inside of a segment is sampled
+NARROWER = 3  # number of zooms towards the smallest value of a distance; each samples a quarter of the interval before
+HALVINGS = 9  # number of times that parts are halved on which a multiplier may reach the circle
+ROOF = 12  # number of zooms towards the largest value of the smallest margin, which may be shaped like a roof
 
 
 Split = tuple[float, Solved]
-"""A point inside a segment, with its place."""
+"""A point inside a segment, with its position in [0, 1]."""
 
 
 class _Look(NamedTuple):
-    """Points of a segment at some places, what they tell, and the first that tells what the segment's ends do not."""
+    """Points of a segment at some positions, their evidence, and the first point whose evidence differs from that of both ends."""
 
     places: list[float]
     points: list[Solved]
@@ -48,10 +52,11 @@ class SegmentSearch:
     ----------
     engine : Engine
     kinds : sequence of Kind
-    functions : mapping of name to function, optional
-        See :func:`contvines.bifurcation.kind.own_tests`.
+        Kinds to look for, in this order.
+    functions : mapping of str to UserFunction, optional
+        User functions by name; see :func:`contvines.bifurcation.kind.own_tests`.
     stops : iterable of str
-        Names of those at whose zeros a branch ends.
+        Names of the user functions at whose zeros a branch ends.
     """
 
     def __init__(
@@ -63,15 +68,29 @@ class SegmentSearch:
     ) -> None:
         self.engine = engine
         self.kinds = [kind for kind in kinds if kind.tests or kind.find]
-        # multipliers of smooth flows jump by rounding alone, as beside homoclinic orbits: parts of parts tell no more
+        # multipliers of smooth flows can jump by rounding alone, as beside homoclinic orbits: halving twice does not help
         self.deepest = 1 if engine.adaptive else engine.settings.halvings
         scale = None if engine.plain else engine.scale[:-1]
         self.symmetries = [SymmetryTest(s, engine.n, engine.shift, scale) for s in engine.problem.symmetries]
-        self.parts = 0  # of segments that were searched along the branch that is followed
+        self.parts = 0  # number of parts of segments searched so far along the current branch
         self.own = own_tests(engine, kinds, functions or {}, tuple(stops), BY_NAME["user"])
 
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
-        """The special points of one segment (positions in [0, 1])."""
+        """Return the special points of one segment.
+
+        Parameters
+        ----------
+        segment : Segment
+        real : bool
+            Whether its beginning has positive margins.
+        depth : int
+            Number of times that a larger segment has been halved already.
+
+        Returns
+        -------
+        list of Located
+            Positions in [0, 1]; not in order.
+        """
         self.parts += depth > 0
         behind = self._beside_infinity(segment, real)
         if behind is not None:
@@ -84,7 +103,7 @@ class SegmentSearch:
         if middle is not None:
             closer = depth < self.deepest and segment.length > self.engine.settings.resolution
             if closer and self.parts < self.engine.settings.parts:
-                # where an event of a virtual orbit grazes the parameter may turn back, but no multiplier is +1
+                # where an event of a virtual orbit grazes, the parameter may turn back without a multiplier +1
                 turns = any(e.kind == "fold" and at_one(self.engine, e) for e in found)
                 return self.both(segment, 0.5, middle, real, depth + 1, turns)
             found.append(replace(unresolved(segment, middle), name="parts" if closer else ""))
@@ -100,13 +119,16 @@ class SegmentSearch:
         depth: int = 0,
         turns: bool = False,
     ) -> list[Located]:
-        """The special points of a part of a segment, from a to b at its places."""
+        """Return the special points of a part of a segment, from a to b; `places` are the positions of a and b on the segment."""
         return moved(self.search(Segment(self.engine, a, b, turns or segment.turns), real, depth), *places)
 
     def both(
         self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0, turns: bool = False
     ) -> list[Located]:
-        """The special points of a segment from its two parts; `turns` where a fold has been found on it, or its inside tells of two."""
+        """Return the special points of a segment by searching its two parts, before and after the point `middle` at `s`.
+
+        `turns` says that the segment contains a fold already found (see `Segment`); it is also set if the slopes at the three points show two folds.
+        """
         slopes = np.array([point.tangent[-1] for point in (segment.a, middle, segment.b)])
         if np.abs(slopes).min() > self.engine.upright(middle.p):
             turns = turns or bool(slopes[0] * slopes[1] < 0.0 and slopes[1] * slopes[2] < 0.0)
@@ -114,9 +136,9 @@ class SegmentSearch:
         return self.part(segment, segment.a, middle, (0.0, s), real, depth, turns) + second
 
     def _beside_infinity(self, segment: Segment, real: bool) -> tuple[float, Solved] | None:
-        """A point close behind the beginning of a segment at a border where a multiplier is infinite but for rounding, and drowns the others.
+        """Return a point close behind the beginning of a segment, if a multiplier is infinite to rounding at its beginning, and hides the others.
 
-        None, too, where the border is passed at the beginning itself.
+        This happens at a border. None if it is not so, or if the border is crossed at the beginning itself.
         """
         engine, place = self.engine, self.engine.settings.close / max(segment.length, TINY)
         if engine.detection != "map" or not place < 1.0 or not _drowned(engine, segment.a):
@@ -127,15 +149,15 @@ class SegmentSearch:
         return place, start
 
     def _of_all_kinds(self, segment: Segment, found: list[Located]) -> list[Located]:
-        """What is found already, then the special points of each kind, which sees those before."""
+        """Return `found` and the special points of each kind; each search receives the points found before it."""
         for kind in self.kinds:
             found = [*found, *self._of_kind(kind, segment, found)]
         return found
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:
-        """The special points of a kind: its own search, or the zeros of its test functions that it verifies.
+        """Return the special points of a kind: the result of its own search, or the verified zeros of its test functions.
 
-        Where the ends of the segment tell of none there may be one before a fold, and one behind it.
+        If the ends of the segment give no test function, the parts before and behind each fold are searched: each may contain a point.
         """
         if kind.find is not None:
             return kind.find(segment, found)
@@ -155,7 +177,7 @@ class SegmentSearch:
         return around
 
     def _zeros(self, kind: Kind, segment: Segment, tests: Iterable[Test]) -> list[Located]:
-        """The zeros of test functions on a segment that are of this kind."""
+        """Return the zeros of test functions on a segment that the kind verifies."""
         found = []
         for test in tests:
             root = locate(segment, test.function, jump=test.jump)
@@ -166,7 +188,7 @@ class SegmentSearch:
         return found
 
     def _own(self, segment: Segment) -> list[Located]:
-        """Zeros of users' tests."""
+        """Return the zeros of user-defined tests."""
         found = []
         for number, own in enumerate(self.own):
             if (own.at(segment.a) >= 0.0) != (own.at(segment.b) >= 0.0):
@@ -177,10 +199,10 @@ class SegmentSearch:
 
     # ------------------------------------------------------------------ where a branch ends
     def _stop(self, segment: Segment, real: bool, depth: int) -> tuple[list[Located], list[Located] | None]:
-        """The border or the meeting at which the branch ends, and the special points before; None where these are not looked for yet."""
+        """Return the border or the meeting at which the branch ends, and the special points before it; None instead of the latter if not yet searched."""
         settings, (border, last) = self.engine.settings, border_of(segment, real)
         if border is not None and depth < settings.halvings:
-            # behind a border multipliers may come back from infinity, and what they say of both ends together is nothing
+            # behind a border multipliers may return from infinity: counts at the two ends cannot be compared
             short = border.position - settings.close / segment.length
             if not short > 0.0:
                 return [border], []
@@ -191,7 +213,7 @@ class SegmentSearch:
                 )
         met = self._meeting(segment)
         if met is not None:
-            # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
+            # the branch behind a meeting is the mirror image of that before it, and has the same special points again
             short = met.position - max(settings.aside * met.position, settings.near / segment.length)
             if not short > 0.0:
                 return [met], []
@@ -201,13 +223,13 @@ class SegmentSearch:
         return [event for event in (met, border) if event is not None], None
 
     def _at_border(self, end: Segment) -> list[Located]:
-        """The special points between the place close before a border up to which others are looked for, and the border, where both tell of some."""
+        """Return the special points on the last, short segment before a border, if counts at its ends differ and are reliable."""
         engine, (before, after) = self.engine, end.counts
         if before == after or not end.length > engine.settings.resolution:
             return []
         if engine.detection != "map" or engine.adaptive:  # of cycles on meshes multipliers jump by rounding
             return []
-        # nothing tells on which side one is that grows without bound; one on the circle is the border's
+        # counts are unreliable with a multiplier that grows without bound; one on the circle belongs to the border
         unbounded = np.abs(engine.spectrum(end.b.row)).max(initial=0.0) >= LIMITS.unbounded
         if unbounded or _drowned(engine, end.b) or on_circle(engine, end.b, LIMITS.agreeing):
             return []
@@ -216,12 +238,13 @@ class SegmentSearch:
         return [e for e in found if not e.astray] + ([] if middle is None else [unresolved(end, middle)])
 
     def _meeting(self, segment: Segment) -> Located | None:
-        """Where the branch comes back to the fixed space of a symmetry.
+        """Return the point at which the branch returns to the fixed space of a symmetry, or None.
 
-        An equilibrium that a cycle becomes may be its own mirror image, too: of symmetries that are met at once the first one says what is met.
+        Several symmetries can be met at once: a cycle that shrinks to an equilibrium may meet its mirror image, too. The first symmetry in the problem's
+        list then gives the kind.
         """
         engine, settings, events = self.engine, self.engine.settings, list[Located]()
-        # beside multipliers near the inverse of rounding Newton's method stops at larger corrections, and what is not symmetric is noise
+        # with multipliers near the inverse of rounding Newton's method stops at larger corrections: smaller asymmetric parts are noise
         correction = max(segment.a.correction, segment.b.correction)
         least = settings.symmetric * max(1.0, correction / settings.tolerance)
         accuracy = correction if engine.adaptive else np.inf
@@ -247,16 +270,24 @@ class SegmentSearch:
         first_met = min(events, key=lambda event: event.position).point
         return next(e for e in events if engine.distance(e.point, first_met) <= settings.one_place)
 
-    # ------------------------------------------------------------------ what the ends of a segment do not tell
+    # ------------------------------------------------------------------ special points that the ends of a segment do not show
     def evidence_of(self, points: Sequence[Solved]) -> Evidence:
-        """What some points tell."""
+        """Return the evidence at some points."""
         return evidence(self.engine, packed(points, Status.RUNNING), self.own)
 
     def inside(self, segment: Segment, real: bool, columns: Iterable[int] = ()) -> Split | None:
-        """A point inside a segment that tells what neither end tells, with its place, or None.
+        """Return a point inside a segment whose evidence differs from that of both ends, with its position, or None.
 
-        A few places are looked at, then, for each suspicious distance (columns of `distances`), others near the one at which it is smallest: of
-        the smallest margin, which may be a roof, to the end, of others while the parabola through three of them passes zero.
+        Points at `PLACES` are tried first. Then, for each suspicious distance, points are tried nearer and nearer to its smallest absolute value, as
+        long as the parabola through three of them crosses zero. For the smallest margin, which may be shaped like a roof, all zooms are done.
+
+        Parameters
+        ----------
+        segment : Segment
+        real : bool
+            Whether its ends have positive margins.
+        columns : iterable of int
+            Suspicious distances, as `Evidence.distance` counts them.
         """
         if not real and (window := self.passed(segment)) is not None:
             return window
@@ -281,7 +312,7 @@ class SegmentSearch:
         return look.split
 
     def _at(self, segment: Segment, places: np.ndarray, ends: Evidence, real: bool) -> _Look:
-        """What points of a segment tell at some places, and the first that tells what its ends do not."""
+        """Return points of a segment at some positions, their evidence, and the first point whose evidence differs from that of both ends."""
         found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
         if not found:
             return _Look([], [], ends, None)
@@ -295,9 +326,9 @@ class SegmentSearch:
         return _Look([s for s, _ in found], points, seen, found[new.argmax()] if new.any() else None)
 
     def alone(self, segment: Segment, real: bool) -> Split | None:
-        """A point inside a segment without neighbours that tells what neither end tells, with its place, or None.
+        """Return the same as `inside` for a segment without neighbouring points.
 
-        Its middle is the third point of the parabolas that say whether to look further.
+        The middle of the segment is the third point of the parabolas that decide whether to search further.
         """
         ends = self.evidence_of([segment.a, segment.b])
         look = self._at(segment, np.array([0.5]), ends, real)
@@ -319,10 +350,10 @@ class SegmentSearch:
     def halved(
         self, segment: Segment, real: bool, neighbours: Sequence[tuple[float, np.ndarray]] = ()
     ) -> Split | None:
-        """A point inside a segment that tells what neither end tells, with its place, or None, where a multiplier may have reached the circle.
+        """Return the same as `inside` for a segment on which a multiplier may have reached the circle and returned.
 
-        The segment is halved, then those of its parts on which, as far as the points now tell, one may have. `neighbours` are rows of points
-        before and behind, with their places.
+        The segment is halved; then, repeatedly, those of its parts on which, by all points so far, a multiplier may still have reached the circle.
+        `neighbours` are the rows of the points before and behind the segment, with their positions.
         """
         ends = self.evidence_of([segment.a, segment.b])
         known, halves = [*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], np.array([0.5])
@@ -341,7 +372,10 @@ class SegmentSearch:
         return None
 
     def passed(self, segment: Segment) -> Split | None:
-        """A point of a virtual segment at which all margins are positive, between where the first ones come back and others are lost."""
+        """Return a real point inside a virtual segment, with its position, or None.
+
+        It exists if the margins that are negative at the beginning become positive before others become negative.
+        """
         engine = self.engine
         one, other = (engine.margins(end.row) < MARGIN for end in (segment.a, segment.b))
         if not (one.any() and other.any()) or (one & other).any():
@@ -356,14 +390,14 @@ class SegmentSearch:
         return middle, point
 
     def before_border(self, segment: Segment, border: Located) -> Split | None:
-        """A point up to a border where another margin is negative, though it is positive at both ends, or None."""
+        """Return a point before a border at which another margin is negative although it is positive at both ends, with its position, or None."""
         engine, place = self.engine, border.position
         if not 0.0 < place < 1.0:
             return None
         left, middle, right = (
             engine.margins(point.row) - MARGIN for point in (segment.a, border.point, segment.b)
         )
-        if (middle < 0.0).any():  # one of a flight, say, that is over before the segment is
+        if (middle < 0.0).any():  # as the margin of a flight that ends within the segment
             return place, border.point
         rows, found = segment.rows(place * PLACES)
         for s in place * PLACES[found & (engine.smallest_margin(rows) < MARGIN)]:
@@ -375,18 +409,18 @@ class SegmentSearch:
         inside = self.inside(part, True, columns.tolist()) if len(columns) else None
         if inside is None or not engine.smallest_margin(inside[1].row) < MARGIN:
             return None
-        # measured along the chord of the whole segment
+        # position along the chord of the whole segment
         gap = engine.join(inside[1].u, inside[1].p) - segment.za
         return float(segment.border @ gap) / segment.length, inside[1]
 
 
 def moved(events: Iterable[Located], low: float, high: float) -> list[Located]:
-    """Events of a part of a segment, at their places on the whole."""
+    """Convert positions of events on a part of a segment, from `low` to `high`, to positions on the whole segment."""
     return [replace(event, position=low + (high - low) * event.position) for event in events]
 
 
 def _drowned(engine: Engine, point: Solved) -> bool:
-    """Whether a point is at a border, and another multiplier nearer to the circle than the rounding of the largest one."""
+    """Whether a point is at a border where a multiplier is so large that its rounding hides the side of another one near the circle."""
     if abs(engine.smallest_margin(point.row)) >= engine.settings.inside:
         return False
     sizes = np.sort(np.abs(engine.spectrum(point.row)))
