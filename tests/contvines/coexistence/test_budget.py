@@ -7,9 +7,6 @@ import contvines as cv
 from contvines.graph.persistence import same_graph
 from orbits.attractors.search import attracted
 from orbits.flows import simulator_of
-from orbits.flows.native.simulator import skip
-from orbits.machines.native_stepper import stepper as machine
-from orbits.machines.stepping import RATE, TURNS, W
 from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
@@ -126,20 +123,3 @@ def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
     monkeypatch.setattr(simulator, "look", lambda longest: looks.append(1) or look(longest))
     attracted(simulator, 0.0, 32, 1e-7, 1)
     assert len(looks) <= 2 + np.log(simulator.waiting.slow) / np.log(4.0)
-
-
-def test_a_cycle_longer_than_looked_for_is_not_waited_for():
-    """Late in a cascade: the motion returns after 64 periods, and nearly so after 32. Nothing fades there that could be waited for."""
-    amplitude = 1.6727837502689091
-    engine, params = machine(CASCADING.name), CASCADING.vector({"amplitude": amplitude})
-    state, strobed = np.array([0.0, 0.4, 0.3, 1.0, 0.0, 0.0]), []
-    for whole in range(20_000, 20_129):
-        skip(engine, state, params, float(whole), 10**9)
-        strobed.append(state[[W, RATE]].copy())
-    returns = {k: np.abs(strobed[-1] - strobed[-1 - k]).max() for k in (16, 32, 64)}
-    assert returns[64] < 1e-11 and 1e-5 < returns[32] < 1e-3 < 10 * returns[16]
-    state[TURNS] = 0.0
-    simulator = simulator_of(CASCADING, params)
-    simulator.go_on(state)
-    assert not attracted(simulator, 0.0, 32, 1e-7, 1).recurrent
-    assert simulator.time < 1000.0

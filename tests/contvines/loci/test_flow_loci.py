@@ -4,6 +4,7 @@ A limit cycle r = 1 with angular speed 1, beside which further states z obey an 
 of g, their multipliers exp(2 pi lambda) with the eigenvalues lambda of these, or minus that where z lives on a band that is twisted once.
 """
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import contvines as cv
+from contvines.loci.adaptive import AdaptiveLocus
 from contvines.problems.abilities import Adaptive
 from tests.contvines.loci.systems import BAZYKIN_DOUBLE_ZERO, bautin, bazykin
 
@@ -196,8 +198,8 @@ def test_a_homoclinic_locus_from_a_diagram_and_from_a_bogdanov_takens_point_is_o
     assert np.abs(locus.values - point.value).max(axis=1).min() < 1e-3
 
 
-def twisted(x, z, growth, other):
-    """A band that turns half round while the ring turns once: along it w' = growth w - w |z|^2, across it at the rate `other`.
+def twisted(x, z, growth, other, turn=1.0):
+    """A band that turns half round while the ring turns once, at some rate: along it w' = growth w - w |z|^2, across it at the rate `other`.
 
     Multipliers are -exp(2 pi growth) and -exp(2 pi other).
     """
@@ -205,8 +207,8 @@ def twisted(x, z, growth, other):
     c, s = x[0] / radius, x[1] / radius
     mean, half, inward = 0.5 * (growth + other), 0.5 * (growth - other), z[0] ** 2 + z[1] ** 2
     return [
-        (mean + half * c - inward) * z[0] + (half * s - 0.5) * z[1],
-        (half * s + 0.5) * z[0] + (mean - half * c - inward) * z[1],
+        (mean + half * c - inward) * z[0] + (half * s - 0.5 * turn) * z[1],
+        (half * s + 0.5 * turn) * z[0] + (mean - half * c - inward) * z[1],
     ]
 
 
@@ -257,6 +259,27 @@ def test_period_doublings_touch_the_folds_of_cycles():
         (point,) = locus.points.values()
         assert point.kind == "fold-flip"
         assert np.abs(point.value).max() < min(point.error, 1e-9)
+
+
+def test_period_doublings_go_on_where_the_mesh_becomes_too_coarse():
+    """The ring turns ever slower at one place, at the rate 1 + q cos; along the band w grows at the rate b - q^2. Nothing is followed twice."""
+
+    def rates(x, p):
+        turn = 1 + p.q * x[0] / np.hypot(x[0], x[1])
+        return [*spiral(x, 1.0, turn), *twisted(x, x[2:], p.b - p.q**2, -0.4, turn)]
+
+    flow = cv.FlowProblem(rates, [1.0, 0, 0, 0], {"b": -0.1, "q": 0.0}, scale=1.0)
+    orbit = cycle(flow, lambda t: [np.cos(t), np.sin(t), 0.0, 0.0])
+    doubling = cv.diagram(orbit, over="b", within=(-0.2, 0.2), depth=0)["PD1"]
+    numbers = []
+    locus = cv.locus(
+        doubling, over="q", within=(-0.1, 0.99), progress=lambda label, points, value: numbers.append(points)
+    )
+    assert sum(after < before for before, after in pairwise(numbers)) <= 1  # one side, then the other
+    assert isinstance(locus.problem, AdaptiveLocus)
+    assert locus.problem.mesh.intervals > len(doubling.u) // 17  # unknowns for each interval at the start
+    b, q = locus.values.T
+    assert {-0.1, 0.99} == {q[0], q[-1]} and b == pytest.approx(q**2, abs=1e-11)
 
 
 def zero_hopf(x, p):
