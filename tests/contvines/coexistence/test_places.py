@@ -1,14 +1,13 @@
 """Where an atlas looks: even gaps, one value in every stretch between two changes, narrow windows, a stated end."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contvines.branches import Branch
 from contvines.coexistence.places import changes, scattered, unasked
-from contvines.graph import Graph
 
 
 @given(st.integers(0, 1000), st.integers(2, 400))
@@ -21,15 +20,10 @@ def test_scattered_values_leave_no_gap_wider_than_the_theorem_says(seed, count):
 
 def graph_with(*intervals):
     """A graph whose branches are stable on these intervals alone."""
-    graph = Graph(within=(0.0, 1.0))
-    for k, (first, last) in enumerate(intervals):
-        values = np.linspace(first, last, 5)
-        points, tangents = np.zeros((5, 1)), np.tile([0.0, 1.0], (5, 1))
-        branch = Branch.__new__(Branch)
-        branch.__dict__.update(label=f"B{k + 1}", values=values, points=points, tangents=tangents, real=True)
-        branch.__dict__["stable_intervals"] = lambda a=first, b=last: [(a, b)]
-        graph.branches[branch.label] = branch
-    return graph
+    branches = {
+        k: SimpleNamespace(real=True, stable_intervals=lambda i=i: [i]) for k, i in enumerate(intervals)
+    }
+    return SimpleNamespace(within=(0.0, 1.0), branches=branches)
 
 
 @given(st.lists(st.tuples(st.floats(0.01, 0.98), st.floats(1e-3, 0.3)), max_size=6), st.integers(0, 20))
