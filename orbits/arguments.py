@@ -14,6 +14,17 @@ from contvines.core.table import block
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+Reals = float | np.ndarray
+"""A number, or an array of them: the shapes of what goes in decide."""
+ROUNDOFF = 2.3e-16
+"""Just above the distance of neighbouring floats, relative: what is smaller than this share of a number does not change it."""
+SMALLEST = 1e-300
+"""Divisors are at least this, so that no quotient of ordinary numbers is undefined; what is smaller is zero."""
+UNBOUNDED = 1e15
+"""Stands for a multiplier that grows without bound towards a border: larger than any that double precision can tell from infinity."""
+COMPLEX_STEP = 1e-200
+"""Its square is zero, so that real parts of complex steps are those of real arithmetic; it changes no bit of an ordinary number."""
+
 
 class CycleData(NamedTuple):
     """The equations of cycles with one word against one parameter, which do not change while a branch is traced; see `cycle_data`."""
@@ -156,16 +167,3 @@ def jacobian(data: CycleData, work: Workspace) -> np.ndarray:
     whole[-1, :, 0, 0] += D[-1, :, 0]
     whole[-1, :, 0, 1:] += twist * D[-1, :, 1:]
     return whole.reshape(length * n, length * n)
-
-
-Reals = float | np.ndarray
-"""A number, or an array of them: the shapes of what goes in decide."""
-
-ROUNDOFF = 2.3e-16
-"""Just above the distance of neighbouring floats, relative: what is smaller than this share of a number does not change it."""
-SMALLEST = 1e-300
-"""Divisors are at least this, so that no quotient of ordinary numbers is undefined; what is smaller is zero."""
-UNBOUNDED = 1e15
-"""Stands for a multiplier that grows without bound towards a border: larger than any that double precision can tell from infinity."""
-COMPLEX_STEP = 1e-200
-"""Its square is zero, so that real parts of complex steps are those of real arithmetic; it changes no bit of an ordinary number."""

@@ -1,4 +1,4 @@
-"""Orbit: one periodic motion, its nodes, its stability, and whether a machine can follow it."""
+"""Orbit: one periodic motion, its nodes, its stability, whether a machine can follow it, and how far it is from another one, whatever their words say."""
 
 from __future__ import annotations
 
@@ -22,6 +22,13 @@ from orbits.simulation.replaying import deviation
 from orbits.words import Margin, approaches_of, limits_of, margin_units, named_margins
 
 REAL = -EVENTS.zero  # margins from here to zero, in units of the machine's own size, are rounding of zero: a border orbit itself is real
+PER_PERIOD = 200  # instants of a forcing period at which motions are compared
+CLOSE = 0.05  # largest difference in position between a border orbit and one that goes on from it, wherever that is measured
+SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on the way to the border
+COARSE = 10  # every so many instants are compared first
+INSTANTS = (
+    PER_PERIOD // 5
+)  # of a period by which motions near a border are compared, where they differ all along
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -302,16 +309,6 @@ def examined(system: Equations, u: np.ndarray, p: float) -> tuple[float, np.ndar
     row = np.empty(count + system.n_margins)
     residual = system.kernels.examine(system.data, u, p, system.scratch, row)
     return float(residual), row[:count].view(np.complex128), row[count:]
-
-
-PER_PERIOD = 200  # instants of a forcing period at which motions are compared
-CLOSE = 0.05  # largest difference in position between a border orbit and one that goes on from it, wherever that is measured
-SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on the way to the border
-
-COARSE = 10  # every so many instants are compared first
-INSTANTS = (
-    PER_PERIOD // 5
-)  # of a period by which motions near a border are compared, where they differ all along
 
 
 def tends(close: float, further: Callable[[], float]) -> bool:

@@ -25,6 +25,8 @@ from . import Branch, Ending
 
 LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
 BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
+Start = TypeVar("Start")
+FAR = 1e-3  # of a typical size: from the same point on the mesh before
 
 
 class Piece(NamedTuple):
@@ -264,11 +266,6 @@ def make_branch(
         description=dict(engine.problem.describe()),
         parameter=engine.problem.parameter,
     )
-
-
-Start = TypeVar("Start")
-
-FAR = 1e-3  # of a typical size: from the same point on the mesh before
 
 
 class Meshes:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 FEWEST = 8  # points in a chunk, however many unknowns there are
 AGAIN = 32  # points that are traced again with shorter steps
+ALONG = 0.7  # cosine of the angle between a tangent and the way to the next point on a mesh that moves along, at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,9 +294,6 @@ def trace(
         )
         yield from itertools.starmap(Point, itertools.islice(points, 0 if first else 1, None))
         first = False
-
-
-ALONG = 0.7  # cosine of the angle between a tangent and the way to the next point on a mesh that moves along, at least
 
 
 class MeshMotion:

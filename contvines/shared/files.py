@@ -11,6 +11,25 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
+KNOWN = (
+    "vines",
+    "toml",
+    "csv",
+    "json",
+    "graphml",
+    "mat",
+    "png",
+    "pdf",
+    "svg",
+    "jpg",
+    "eps",
+    "txt",
+    "py",
+    "xls",
+    "xlsx",
+)
+ALSO = {"csv": ("txt",)}  # endings that fit beside the usual one
+
 
 def write_csv(path: str | Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
     """A line of heads, then one for each row; an OSError where the file cannot be written."""
@@ -56,26 +75,6 @@ def module_of(path: str | Path) -> ModuleType:
 def names_of(module: ModuleType, kind: type) -> list[str]:
     """Under which names a module has things of a kind."""
     return [name for name, value in vars(module).items() if isinstance(value, kind)]
-
-
-KNOWN = (
-    "vines",
-    "toml",
-    "csv",
-    "json",
-    "graphml",
-    "mat",
-    "png",
-    "pdf",
-    "svg",
-    "jpg",
-    "eps",
-    "txt",
-    "py",
-    "xls",
-    "xlsx",
-)
-ALSO = {"csv": ("txt",)}  # endings that fit beside the usual one
 
 
 def refuse_ending(path: Path, ending: str) -> None:

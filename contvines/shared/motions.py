@@ -13,6 +13,8 @@ from .numbers import ROUNDED
 
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 P = TypeVar("P", covariant=True)
+KNOWN = 10.0  # times the distance at which the nearest was computed: how well the others are known that are to be on the boundary, too
+GOLDEN = 60  # steps to the root
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,9 +98,6 @@ def is_strong(measures: Mapping[str, float]) -> bool:
     return FEW <= measures.get(SILENT, 0.0) < 1.0
 
 
-KNOWN = 10.0  # times the distance at which the nearest was computed: how well the others are known that are to be on the boundary, too
-
-
 def attracts(sizes: np.ndarray, boundary: float) -> bool | None:
     """Whether all are below the boundary; None where the largest is on it but for rounding.
 
@@ -149,9 +148,6 @@ def marginal_text(multipliers: Iterable[complex], flow: bool = False) -> str:
     else:
         what = "a pair of multipliers is on the unit circle"
     return f"marginal: {what}"
-
-
-GOLDEN = 60  # steps to the root
 
 
 def low_discrepancy(dimension: int, count: int, seed: int, first: int = 0) -> np.ndarray:

@@ -25,6 +25,10 @@ APPLICATION_ID = 0x56494E45  # "VINE"
 VERSION = 1
 TAILS = ("-wal", "-shm", "-journal")  # of the files that SQLite keeps beside one in use
 MAGIC = b"SQLite format 3\x00"
+DTYPES = {"f": "<f8", "c": "<c16", "b": "|b1", "i": "<i8", "u": "<i8"}
+"""Types of arrays in a file by numpy's letter for the kind."""
+CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""Characters that a terminal obeys, line ends and tabs apart."""
 
 
 class StoreError(ValueError):
@@ -261,10 +265,6 @@ def set_aside(path: Path, *others: Path) -> Path | None:
     return path.with_name(stem + path.suffix)
 
 
-DTYPES = {"f": "<f8", "c": "<c16", "b": "|b1", "i": "<i8", "u": "<i8"}
-"""Types of arrays in a file by numpy's letter for the kind."""
-
-
 def split(content: Mapping[str, Any]) -> tuple[str, dict[str, np.ndarray]]:
     """JSON text of everything but the arrays, and the arrays."""
     arrays = {k: v for k, v in content.items() if isinstance(v, np.ndarray)}
@@ -299,10 +299,6 @@ def unpacked(dtype: str, shape: str, data: bytes) -> np.ndarray:
     if min(sizes, default=0) < 0 or math.prod(sizes) * np.dtype(dtype).itemsize != len(data):
         raise ValueError(f"an array of shape {shape!r} in {len(data)} bytes")
     return np.frombuffer(data, dtype=dtype).reshape(sizes).copy()
-
-
-CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-"""Characters that a terminal obeys, line ends and tabs apart."""
 
 
 def printable(content: Mapping[str, Any]) -> dict[str, Any]:

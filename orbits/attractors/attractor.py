@@ -1,4 +1,4 @@
-"""Attractors found by simulation, and statistics of their motion."""
+"""Attractors found by simulation, and what is told of their motion: over one cycle, else for as long as its statistics need, with its modulation."""
 
 from __future__ import annotations
 
@@ -26,6 +26,12 @@ SETTLED = 0.01
 """Largest relative difference of two observations that agree."""
 LASTING = 16  # forcing periods that `Attractor.follow` simulates of a motion that is not periodic
 MOST_EVENTS = 100_000
+OFTEN = 32
+"""A motion that is not periodic is `chatter` if it rests on a wall at least once in so many periods, on average."""
+PIECE = 256  # periods simulated at a time: bounds the memory
+PERIOD_EVENTS = 400  # per period
+INSTANTS = 200  # instants of a cycle
+SAMPLES = 48  # instants; events come on top
 
 
 @dataclass(frozen=True)
@@ -273,14 +279,6 @@ class Attractor:
         if one[0] != two[0]:
             return np.inf
         return float(np.abs(one[1] - two[1]).max(initial=0.0) / (1.0 + np.abs(one[1]).max(initial=0.0)))
-
-
-OFTEN = 32
-"""A motion that is not periodic is `chatter` if it rests on a wall at least once in so many periods, on average."""
-PIECE = 256  # periods simulated at a time: bounds the memory
-PERIOD_EVENTS = 400  # per period
-INSTANTS = 200  # instants of a cycle
-SAMPLES = 48  # instants; events come on top
 
 
 def observe(found: Attractor, least: float = 0.0) -> Observation:

@@ -41,6 +41,17 @@ NEARER = (
     0.03,
     0.01,
 )  # parts of the way from the border at which a simulated orbit is solved for again
+UNKNOWN = (
+    "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"
+)
+ENDS = {
+    "chatter": "goes to a motion on which impacts pile up",
+    "rest": "comes to rest",
+    "stuck": "comes to rest",
+    "aperiodic": "goes to a motion without a period",
+}
+"""What simulation does where it finds no orbit."""
+TRANSIENT = 60  # forcing periods, or events of a self-excited motion
 
 
 def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list[Seed]:
@@ -277,19 +288,6 @@ def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
             note = "the slips vanish: persistence, the absorber is stuck"
             return [Seed(other, other.reduce(orbit.nodes), q, direction, "border", note, True)]
     return []
-
-
-UNKNOWN = (
-    "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"
-)
-ENDS = {
-    "chatter": "goes to a motion on which impacts pile up",
-    "rest": "comes to rest",
-    "stuck": "comes to rest",
-    "aperiodic": "goes to a motion without a period",
-}
-"""What simulation does where it finds no orbit."""
-TRANSIENT = 60  # forcing periods, or events of a self-excited motion
 
 
 def dead_end(problem: CycleProblem, point: BorderPoint) -> str:

@@ -31,6 +31,10 @@ from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.settings import BORDERING, ROUNDING, SOLVING
 
+MOST = 8  # up to so many rounds of a cycle are joined to one at a border
+UNSTABLE = 1.5  # a largest multiplier from which on a cycle is unstable, though the product is known next to the border only
+BOUNDED = 0.05  # relative change of the derivatives from one size of what grows to the next, where they have a limit
+
 
 def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
     """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
@@ -149,11 +153,6 @@ def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.
     high = np.where(exists, found, -np.inf).max(axis=1)
     finite = (np.isfinite(found) | ~exists).all(axis=1)
     return np.where(finite[:, None], np.stack([low, high], axis=1), np.nan), M
-
-
-MOST = 8  # up to so many rounds of a cycle are joined to one at a border
-UNSTABLE = 1.5  # a largest multiplier from which on a cycle is unstable, though the product is known next to the border only
-BOUNDED = 0.05  # relative change of the derivatives from one size of what grows to the next, where they have a limit
 
 
 class Rounds(NamedTuple):

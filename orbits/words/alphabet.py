@@ -1,4 +1,4 @@
-"""Alphabets: the letters of a set of contacts, their modes, and the mirror image of both.
+"""Alphabets: the letters of a set of contacts, their modes, and the mirror image of both; words as they are written over them.
 
 A mode says for every contact what it is doing between two events: a wall is free (0) or holds (1), a friction slides (-1, +1),
 sticks (0) or is absent (2), a switch has its sign. An event changes the mode of its own contact; an impact may also turn
@@ -36,6 +36,10 @@ from orbits.contacts.wall import FREE, WallLaw
 
 if TYPE_CHECKING:
     from orbits.contacts import Mode
+
+SHOWN = 60  # letters of a word in a message
+MARKS = {-1: "-", 0: "0", 1: "+", ABSENT: "f"}
+DOING = {-1: "sliding back", STUCK: "stuck", 1: "sliding on", None: "open"}
 
 
 class Watch(IntEnum):
@@ -209,11 +213,6 @@ LETTERS, CODES = "".join(SHAKEN.letters), SHAKEN.codes
 def shaken(frictionless: bool) -> Alphabet:
     """The alphabet of a machine with a shaken cavity."""
     return FRICTIONLESS if frictionless else SHAKEN
-
-
-SHOWN = 60  # letters of a word in a message
-MARKS = {-1: "-", 0: "0", 1: "+", ABSENT: "f"}
-DOING = {-1: "sliding back", STUCK: "stuck", 1: "sliding on", None: "open"}
 
 
 class WordError(ValueError):

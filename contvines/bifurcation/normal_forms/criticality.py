@@ -28,6 +28,9 @@ from ..settings import NORMAL_FORMS
 from .coefficients import Forms
 
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
+WIDE = 16.0  # times a step: the chord on which points beside a special point are placed; they may lie far off it, and are none of its ends
+PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / WIDE
+NEARER = 0.25  # times a step: the next one, where a number has not converged
 
 
 def strong_resonance(multiplier: complex) -> str:
@@ -120,11 +123,6 @@ def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float |
         if np.isfinite(found.value) and found.error < NORMAL_FORMS.unsure * abs(found.value)
         else None
     )
-
-
-WIDE = 16.0  # times a step: the chord on which points beside a special point are placed; they may lie far off it, and are none of its ends
-PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / WIDE
-NEARER = 0.25  # times a step: the next one, where a number has not converged
 
 
 def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
