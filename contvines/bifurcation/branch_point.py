@@ -1,8 +1,8 @@
-"""Branch point: another branch crosses, where the bordered matrix [[F_u, F_p], [tangent]] is singular.
+"""Branch points: another branch crosses, and the bordered matrix M = [[F_u, F_p], [tangent]] is singular.
 
-A simple one is a change of the sign of its determinant, located on the regular function 1 / (c . M^-1 b) of
-:class:`DeterminantTest`. Where multipliers are known each one that passes +1 is a test
-function of its own, so that an even number of branches at once is seen, too.
+At a simple branch point its determinant changes sign; the point is located as a zero of the smooth function 1 / (c . M^-1 b) of
+:class:`DeterminantTest`. If multipliers are known, each one that crosses +1 is a test function of its own, so that an even number of
+branches that cross at once is detected, too.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from .locate import Located, Role, Root, Segment, locate, locate_singular
 from .location_error import blurred
 from .scan import balance, counts, sizes_by_sort
 
-WIDTH = 0.02  # part of a segment, either side of a place that is known already
+WIDTH = 0.02  # half width of the window, relative to the segment, in which the determinant refines a known position
 AT_SIGNS = Aim(SIGN, NO_COLUMNS)
 
 
 class DeterminantTest:
     """A smooth function with a simple zero where [[F_u, F_p], [border]] is singular: 1 / (c . M^-1 b).
 
-    b is a fixed vector, c the direction of M^-1 b near the zero.
+    b is a fixed vector; c is the direction of M^-1 b, computed at the first point that is evaluated, which must be near the zero.
     """
 
     def __init__(self, engine: Engine, border: np.ndarray) -> None:
@@ -49,7 +49,14 @@ class DeterminantTest:
 
 
 def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
-    """The branch points of a segment whose folds and meetings are known."""
+    """Find the branch points of a segment.
+
+    Parameters
+    ----------
+    segment : Segment
+    found : sequence of Located
+        Special points found already; folds and meetings must be among them, as multipliers cross +1 there, too.
+    """
     engine = segment.engine
     folds = [e.position for e in found if e.kind == "fold"]
     met = [e.position for e in found if e.role is Role.MEETING]
@@ -61,7 +68,7 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
         root = _by_sign(segment)
         if root is not None and not _near(segment, root.position, met):
             turning = _near(segment, root.position, folds)
-            # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
+            # a branch may turn exactly where it meets another one; at a plain fold the change of sign is rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
                 place = Located.at(root, "branch-point", astray=is_astray(segment, root))
                 if not (place.astray or _may_pass(segment, root)):
@@ -71,7 +78,7 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
 
 
 def _by_sign(segment: Segment) -> Root | None:
-    """Where the determinant changes its sign on a segment; None where the change may be that of rounding."""
+    """Locate the change of sign of the determinant on a segment; None if the change may be rounding."""
     rough = locate(segment, AT_SIGNS, tolerance=segment.engine.settings.aside)
     if rough is None or not passes_for_certain(segment, rough.position):
         return None
@@ -79,7 +86,7 @@ def _by_sign(segment: Segment) -> Root | None:
 
 
 def _may_pass(segment: Segment, root: Root) -> bool:
-    """Whether a multiplier may be +1 at a change of the sign; where all are next to zero the sign is that of rounding."""
+    """Whether a multiplier may be +1 at a change of the determinant's sign; if all are near zero the sign is rounding."""
     engine = segment.engine
     if engine.detection != "map" or engine.scaled:
         return True
@@ -88,13 +95,13 @@ def _may_pass(segment: Segment, root: Root) -> bool:
 
 
 def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> list[Located]:
-    """Where multipliers pass +1 beside folds and meetings."""
+    """Locate multipliers that cross +1 elsewhere than at the given folds and meetings."""
     engine = segment.engine
     tests = passing(segment, "plus")
-    # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
+    # counts of machines are exact; counts of scaled problems may be wrong by rounding, if eigenvalues are tiny beside others
     rounded = engine.scaled and engine.signed and len(tests) % 2 != turned(segment.a, segment.b)
     if len(tests) == 1 and engine.scaled:
-        # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
+        # a fold changes the sign of det(F_u) only, a branch point also that of the bordered determinant
         one_fold = len(folds) == 1 and segment.a.sign * segment.b.sign > 0.0
         if one_fold or (rounded and not passes(segment, 0.5, 0.5 + engine.settings.aside)):
             return []
@@ -105,11 +112,11 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
             continue
         unit = min(1.0, *(float(np.abs(engine.spectrum(end.row)).max()) for end in (segment.a, segment.b)))
         if abs(test.function(root.point)) > engine.settings.critical * unit or _complex(segment, root.point):
-            continue  # two real multipliers met and left the axis; none of them was at the boundary
+            continue  # two real multipliers met and became a pair; none of them was on the circle
         if not passes_for_certain(segment, root.position):
             continue
         if alone(engine, root.point):
-            # neighbouring branches have opposite signs; on one branch the parameter turns by no more than rounding
+            # opposite signs: the ends lie on neighbouring branches; equal signs: the parameter turns by no more than rounding
             if segment.a.sign * segment.b.sign < 0.0:
                 points.append(Located.at(root, "", astray=True))
         elif not rounded or passes(segment, root.position):
@@ -118,21 +125,21 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
 
 
 def _complex(segment: Segment, point: Solved) -> bool:
-    """Whether it was a pair that passed the axis, where only branch points are looked for."""
+    """Whether a complex pair, not a real eigenvalue, crosses the axis at a point, for problems with only branch points ("real")."""
     engine = segment.engine
     if engine.detection != "real":
         return False
     near, ends = (engine.spectrum(row) for row in (point.row, np.array([segment.a.row, segment.b.row])))
-    one = near[np.argmin(np.abs(near.real))]  # the one that passes; another may be next to nothing all along
+    one = near[np.argmin(np.abs(near.real))]  # the critical one; another may be nearly zero all along
     unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
     return bool(abs(one) > engine.settings.critical * unit)
 
 
 def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
-    """Branch points again, through interpolation; those at one and the same place from the mean of their tests.
+    """Locate branch points again by interpolation; several at the same position by the mean of their tests.
 
-    Eigenvalues are rounded by the largest of them, which may be 1e9 times those that pass zero where the unknowns of the start are far
-    larger than here: then the determinant may know the place better.
+    The rounding of eigenvalues is relative to the largest of them, which may be 1e9 times the critical ones if the unknowns at the start were far
+    larger than here. The determinant may then give the position more accurately.
     """
     engine, settings = segment.engine, segment.engine.settings
     result = [e for e in points if e.kind != "branch-point"]
@@ -161,14 +168,14 @@ def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
 
 
 def _exchange(segment: Segment) -> Located | None:
-    """A branch point where one multiplier leaves the circle while another enters; see :func:`balance`."""
+    """Locate a branch point at which one multiplier leaves the circle while another enters; see :func:`contvines.bifurcation.scan.balance`."""
     engine = segment.engine
 
     def test(point: Solved) -> float:
         return float(balance(engine, point.row))
 
     def nearest(point: Solved) -> float:
-        """How far from the circle the nearest real multiplier is."""
+        """Return the distance of the nearest real multiplier from the circle."""
         return float(np.nanmin(np.abs(sizes_by_sort(engine, point.row)[0]), initial=np.inf))
 
     if not test(segment.a) * test(segment.b) < 0.0:
@@ -184,12 +191,13 @@ def _exchange(segment: Segment) -> Located | None:
     if not passes_for_certain(segment, rough.position):
         return None
     root = locate_singular(segment, test, rough.position) or rough
-    # both may be next to nothing, one on either side, without being zero
+    # both may be nearly zero, one on either side, without being zero
     known = nearest(root.point) <= engine.settings.aside * max(nearest(segment.a), nearest(segment.b))
     return Located.at(root, "branch-point") if known else None
 
 
 def _near(segment: Segment, position: float, others: list[float]) -> bool:
+    """Whether a position is equal to one of the others within `Settings.near`."""
     return any(abs(position - other) <= segment.engine.settings.near for other in others)
 
 

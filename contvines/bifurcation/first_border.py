@@ -1,9 +1,9 @@
-"""Borders: where on a segment a branch ceases to be real (or becomes so again), which margin says so, and tangent and multipliers there.
+"""Borders: locate where a branch stops being real (or becomes real again), and find the vanishing margin, the tangent and the multipliers there.
 
-Where something vanishes at a border (an impact's speed, a stick, a flight), the equations there may be singular, and what is
-computed from their derivatives is rounding. The branch is smooth up to the border, though, and so are its tangent and the
-coefficients of the characteristic polynomial of its multipliers: they are extrapolated. Where a multiplier grows without bound, as
-at a wall that is touched without speed, the coefficients times the distance are.
+If an event vanishes at a border (an impact's speed, the duration of a stick or flight), the equations may be singular there, and
+numbers computed from their derivatives are rounding. But the branch is smooth up to the border, and so are its tangent and the
+coefficients of the characteristic polynomial of its multipliers; these are extrapolated. If a multiplier grows without bound, as
+at a graze of a wall, the coefficients times the distance to the border are extrapolated.
 """
 
 from __future__ import annotations
@@ -22,36 +22,39 @@ from .kinds import BORDERS
 from .locate import Located, Role, Root, Segment, locate
 from .settings import LIMITS
 
-MARGIN_ROUNDING = 2.0 * EPSILON  # of margins, in units of the machine's own size
-BENT = 0.1  # part of the distance of the point close before a border at which its margin tells a bend
-NEARER = 0.05, 0.03, 0.02, 0.01, 0.005  # parts of it at which unknowns that are known to few digits show
-TOLD = 10.0  # times that: a difference of margins which is no rounding
-SEEN = 10.0  # times an error that is seen in a few samples: what is stated
-ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
+# error of a border's parameter value
+MARGIN_ROUNDING = 2.0 * EPSILON  # rounding of margins, in units of the machine's size
+BENT = 0.1  # position of the sample that gives the curvature of a margin, relative to the point close before the border
+NEARER = 0.05, 0.03, 0.02, 0.01, 0.005  # positions of the samples that show the scatter of a margin
+TOLD = 10.0  # a difference of margins is more than rounding from this many MARGIN_ROUNDING on
+SEEN = 10.0  # safety factor of an error estimated from a few samples
+ORDER = {name: i for i, name in enumerate(BORDERS)}  # rank of the kinds of borders that are met at once
 
-BEYOND = 4.0  # times what has grown at the nearest of them: what is computed at the border is not the end of that growth
-SPREAD = 4.0  # a margin differs by such a factor at least where its products with what grows as its inverse are compared
-VANISHES = 0.1  # of the margin that does at the border: what it seems to be there, from points so near that rounding may stop its fall
-CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
-PLACES = np.array([1.0, 2.0, 3.0, 4.0])
-STRAYING = 0.5  # part of that distance by which a point before a short segment may be missed
-GROWN = 2.0  # times a multiplier at four times the distance: it grows on towards the border
-POLES = 2  # multipliers that grow without bound, at most
-CONVERGED = (LIMITS.smooth, *[LIMITS.growing] * POLES)
-EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # of values times powers of the place
+# limits of tangent and multipliers
+BEYOND = 4.0  # growth is unbounded if the value at the border exceeds this many times the one expected at the nearest sample
+SPREAD = 4.0  # factor by which margins must differ at least, where their products with growing coefficients are compared
+VANISHES = 0.1  # the extrapolated margin must be below this part of its nearest sample; else rounding has stopped its fall
+CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # weights of values at PLACES in the cubic's value at 0
+PLACES = np.array([1.0, 2.0, 3.0, 4.0])  # distances of the samples from the border, in units of the spacing
+STRAYING = 0.5  # largest error of a point before a short segment, relative to its distance from the segment
+GROWN = 2.0  # a multiplier grows without bound if it is this many times the one at four times the distance
+POLES = 2  # largest number of multipliers that grow without bound
+CONVERGED = (LIMITS.smooth, *[LIMITS.growing] * POLES)  # tolerances, by number of growing multipliers
+EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # the same times powers of PLACES
 
 
 def border_of(segment: Segment, real: bool) -> tuple[Located | None, Solved | None]:
-    """The border of a segment, and the point close before it; None where there is none.
+    """Return the border of a segment, and the point close before it; None for each that does not exist.
 
     Parameters
     ----------
     segment : Segment
     real : bool
-        Whether its beginning has positive margins: the border is where the first one vanishes; else where all are positive again.
+        Whether its beginning has positive margins. Then the border is the first zero of a margin; else it is the point from which
+        all margins are positive again.
     """
     engine = segment.engine
-    a, b = (end.row[2 * engine.m :] < MARGIN for end in (segment.a, segment.b))  # not of what is no number
+    a, b = (end.row[2 * engine.m :] < MARGIN for end in (segment.a, segment.b))  # False for NaN
     if real:
         falling = (b & ~a).nonzero()[0]
     else:
@@ -60,7 +63,7 @@ def border_of(segment: Segment, real: bool) -> tuple[Located | None, Solved | No
     if root is None:
         return None, None
     if not real:
-        # another margin that is zero to rounding all along hides where those that were negative come back
+        # a margin that is zero to rounding all along hides the return of those that were negative
         own = first_zero(segment, a.nonzero()[0], real)
         if own is not None and engine.smallest_margin(own.point.row) >= MARGIN:
             root = own
@@ -85,13 +88,13 @@ def border_of(segment: Segment, real: bool) -> tuple[Located | None, Solved | No
 
 
 def first_zero(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
-    """Where the smallest of the chosen margins passes zero."""
-    # where the ends do not have opposite signs after all, a real branch ends at the end at which they are smallest
+    """Locate the zero of the smallest of the chosen margins (indices)."""
+    # if the ends do not have opposite signs after all, a real branch ends at the end with the smaller margin
     margin = Aim(MARGINS, 2 * segment.engine.m + chosen, anyway=int(real))
     root = locate(segment, margin)
     if root is None or root.position > 0.0 or not margin(root.point) < 0.0:
         return root
-    # the segment begins behind the border, by what counts as rounding: where the margin is flat that may be seen in the parameter
+    # the segment begins behind the border, by a margin within rounding; where the margin is flat the parameter may differ visibly
     settings = segment.engine.settings
     ahead = segment.at(min(1.0, max(settings.aside, settings.close / segment.length)))
     fall = 0.0 if ahead is None else margin(root.point) - margin(ahead)
@@ -101,10 +104,10 @@ def first_zero(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root |
 
 
 def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Those of the margins that are negative just behind a border.
+    """Return those of the margins `falling` (indices) that are negative just behind a border.
 
-    Of a cycle that repeats itself at the border, as where a stick vanishes in every other round, the margins of the other
-    rounds touch zero there, and come back; that they are negative at the end of the segment is another matter.
+    If a cycle repeats itself at the border, for example where a stick vanishes in every other round, the margins of the other
+    rounds touch zero there and become positive again. They may be negative at the end of the segment for other reasons.
     """
     here = segment.engine.margins(root.point.row)[falling]
     settings = segment.engine.settings
@@ -119,14 +122,14 @@ def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray
 
 
 def _rounding(segment: Segment, root: Root, index: int, before: Solved | None) -> float:
-    """How far rounding of the margins that vanish at a border, and of its unknowns, may move its parameter value.
+    """Return the error of a border's parameter value from rounding of the margins that vanish there, and of its unknowns.
 
-    Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
-    passes zero. The point close before the border may be known.
+    A flat margin is zero to rounding far beyond the final bracket of the root search. The error then is the distance, in the parameter, to the points
+    at which it exceeds rounding. `before` is the point close before the border, if it is known.
     """
     first, place, point = 2 * segment.engine.m, root.position, root.point
     margins = point.row[first:]
-    sloped = segment.engine.settings.close  # from here on the slope of a margin can be told
+    sloped = segment.engine.settings.close  # distance at which a margin's slope can be measured
     flat = np.abs(margins) < TOLD * MARGIN_ROUNDING
     flat[index] = True
     flat = flat.nonzero()[0]
@@ -153,10 +156,10 @@ def _rounding(segment: Segment, root: Root, index: int, before: Solved | None) -
 
 
 def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solved) -> float:
-    """How far unknowns that are not known to the last digits, as where two events fall together, may move the parameter value of a border.
+    """Return the error of a border's parameter value from unknowns that have lost digits, as where two events coincide.
 
-    They show in the margin, close before the border, as its distance from the parabola through the border and two points farther away: a
-    smooth margin lies on it. Of a margin that jumps at the border nothing is said.
+    These show in the margin's samples close before the border, as scatter around the parabola through the border and two points farther away, on which
+    a smooth margin lies. Returns 0 if the margin jumps at the border.
     """
     j = 2 * segment.engine.m + index
     points = segment.several([root.position + part * reach for part in (BENT, *NEARER)])
@@ -172,23 +175,24 @@ def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solv
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:
-    """Margins, those that do not apply or have no bound as large ones."""
+    """Return margins in which infinite ones and NaN are replaced by 1."""
     return np.where(np.isfinite(margins), margins, 1.0)
 
 
 def _which(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> int:
-    """The margin that vanishes. Several may, as when a stick disappears: which one is smallest is then a matter of
+    """Return the index of the margin that vanishes.
 
-    rounding, so those that are as small as the smallest one count as equal, and the order of kinds decides.
+    Several margins vanish at once if, for example, a stick disappears; rounding then decides which one is smallest. Therefore those within
+    `Settings.tied` of the smallest one count as equal, and the order of their kinds (`ORDER`) decides.
     """
     tied = falling[margins[falling] <= margins[falling].min() + engine.settings.tied]
     kinds = [engine.problem.margin_kind(int(j)) for j in tied]
     return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])
 
 
-@np.errstate(all="ignore")  # multipliers beside homoclinic orbits, and their products, are beyond all numbers
+@np.errstate(all="ignore")  # multipliers beside homoclinic orbits, and their products, overflow
 def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
-    """The point at a border, its tangent and multipliers replaced by their limits where they are rounding; and the point close to it."""
+    """Return the point at a border, with tangent and multipliers replaced by their one-sided limits if they are rounding; and the point close before it."""
     engine, point, position = segment.engine, root.point, root.position
     tangent, row, m, before = point.tangent, point.row, engine.m, None
     reach = min(engine.settings.aside, position / 3.0)
@@ -212,9 +216,9 @@ def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
 
 
 def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
-    """Limits of the characteristic polynomial times powers of the distance, up to the first that is finite.
+    """Return the limits at a border of the characteristic polynomial times powers 0, 1, ... of the distance, up to the first that is finite.
 
-    None if none converges, or if they agree with the polynomial computed at the border (of the row `own`), as at most borders.
+    None if no limit converges, or if the polynomial computed at the border (from the row `own`) is right, as at most borders.
     """
     computed = _characteristic(segment.engine.spectrum(own)).tolist()
     best: list[list[float]] | None = None
@@ -228,7 +232,7 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
         limit = (powers[:, None] * (EXTRAPOLATION @ polynomials)).tolist()
         if _apart(limit[0], computed) < LIMITS.agreeing:
             return None
-        # compared with the spacing before
+        # change from the spacing before
         changed = [_apart(one, other) for one, other in zip(limit, last)] or [math.inf] * (POLES + 1)
         poles = next((k for k, change in enumerate(changed) if change < CONVERGED[k]), POLES)
         fewer = best is not None and poles < len(best) - 1
@@ -246,7 +250,7 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
 
 
 def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
-    """The polynomial, and its limit times the margin that vanishes, if that is the same wherever rounding has put the margin."""
+    """Return the polynomial and the limit of its product with the vanishing margin, if this product is constant for all sizes of the margin, else None."""
     engine = segment.engine
     beside = [rows for _, rows in _before(segment, position, LIMITS.nearest)]
     _, before = next(_before(segment, position, LIMITS.distances))
@@ -267,9 +271,9 @@ def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[
 
 
 def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray:
-    """The row with multipliers as they are nearest to the border, those that still grow there without bound.
+    """Return the row with the multipliers of the nearest points to the border; those that still grow there get the size `LIMITS.unbounded`.
 
-    For borders at which more vanishes at once than powers of the distance are extrapolated, and nothing can be computed there.
+    Used if the row computed at the border is not finite and more events vanish at once than `POLES` allows for.
     """
     m, nearest = segment.engine.m, [rows for _, rows in _before(segment, position, LIMITS.distances)][-1:]
     if not nearest or not np.isfinite(nearest[0][:, : 2 * m]).all():
@@ -284,10 +288,10 @@ def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray
 
 
 def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
-    """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
+    """Whether coefficients that grow towards the border stop growing very near to it, and reach the values computed there.
 
-    As where another impact, before the one that is about to graze, is almost as slow. Nearer than rounding lets the vanishing margin
-    come to zero nothing grows any more, and nothing can be determined.
+    Example: another impact, before the one that is about to graze, is almost as slow. Returns False if rounding keeps the vanishing margin from
+    reaching zero, as the growth stops there for this reason.
     """
     largest = max(map(abs, computed))
     for _, rows in _before(segment, position, LIMITS.nearest):
@@ -297,14 +301,14 @@ def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
         if not np.isfinite(values).all():
             continue
         if not np.abs(values).max() <= (1.0 + LIMITS.growing) * largest:
-            return False  # what is computed at the border is something else
+            return False  # the polynomial exceeds the one computed at the border
         if _apart(CUBIC.dot(values).tolist(), computed) < LIMITS.growing:
             return True
     return False
 
 
 def _apart(one: list[float], other: list[float]) -> float:
-    """Largest difference of two polynomials (m + 1,), as a part of their largest coefficient; infinite where they are."""
+    """Return the largest difference of two polynomials, shape (m + 1,), relative to their largest coefficient; inf if one is not finite."""
     if not all(map(math.isfinite, one + other)):
         return math.inf
     gap = max(map(abs, map(sub, one, other)))
@@ -314,9 +318,9 @@ def _apart(one: list[float], other: list[float]) -> float:
 def _before(
     segment: Segment, position: float, spacings: tuple[float, ...]
 ) -> Iterator[tuple[float, np.ndarray]]:
-    """Spacings, and the rows of multipliers and margins at four points before the border (4, columns), where all are found.
+    """Generate (spacing, rows of multipliers and margins at four points before the border, shape (4, columns)), if all four are solved.
 
-    A branch that begins beside its border has no points further away: they are looked for before the segment, along its tangent.
+    If the branch begins next to its border, points farther away are sought before the segment, along its tangent.
     """
     engine, a = segment.engine, segment.a
     for spacing in spacings:
@@ -340,7 +344,7 @@ def _before(
 
 
 def _characteristic(spectrum: np.ndarray) -> np.ndarray:
-    """Coefficients of the polynomials with these zeros (..., m), highest power first, shape (..., m + 1)."""
+    """Return the coefficients of the polynomials with these zeros, shape (..., m): highest power first, shape (..., m + 1)."""
     m = spectrum.shape[-1]
     coefficients: NDArray[np.complex128] = np.zeros((*spectrum.shape[:-1], m + 1), dtype=np.complex128)
     coefficients[..., 0] = 1.0
@@ -350,10 +354,10 @@ def _characteristic(spectrum: np.ndarray) -> np.ndarray:
 
 
 def _roots(limits: list[list[float]]) -> NDArray[np.complex128]:
-    """The multipliers, largest modulus first; those that grow without bound have a size of `LIMITS.unbounded`."""
+    """Return the multipliers from limits of the polynomial; those that grow without bound come first, with the size `LIMITS.unbounded`."""
     poles = len(limits) - 1
     finite = sorted(_zeros(limits[poles][poles:]), key=lambda one: (-abs(one), -one.real, -one.imag))
-    # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
+    # near the border the growing ones are the roots of x^k + c_1 x^(k-1) + ... divided by the distance
     growing = _zeros([limits[k][k] for k in range(poles + 1)])
     growing = [LIMITS.unbounded * one / max(abs(one), TINY) for one in growing]
     missing = len(limits[0]) - 1 - len(growing) - len(finite)
@@ -361,7 +365,7 @@ def _roots(limits: list[list[float]]) -> NDArray[np.complex128]:
 
 
 def _zeros(polynomial: list[float]) -> list[complex]:
-    """Zeros of a polynomial; of one or two in closed form."""
+    """Return the zeros of a polynomial; in closed form up to degree two."""
     degree, lead = len(polynomial) - 1, polynomial[0]
     if degree > 2 or lead == 0.0:
         return np.roots(polynomial).tolist()

@@ -1,7 +1,7 @@
-"""The kinds of special points. Labels, marks in pictures, tables, legends, detection and switching follow from them.
+"""The built-in kinds of special points. Labels, markers in pictures, tables, legends, detection and switching follow from them.
 
-Of folds and of multipliers that pass the unit circle (eigenvalues the imaginary axis) the tests are here, too. Each test function of these is the k-th
-largest multiplier of a sort, so that two that cross at once are two special points.
+The test functions of folds and of multipliers that cross the unit circle (eigenvalues: the imaginary axis) are here, too. A test function of the
+latter is the k-th largest multiplier of a sort, so that two multipliers that cross at once give two special points.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ TURN = Aim(SLOPE, NO_COLUMNS)
 
 
 def fold_tests(segment: Segment) -> list[Test]:
-    """The parameter's part of the tangent, if it has another sign at the other end.
+    """Return the test for folds: the parameter's component of the tangent, if it changes its sign on the segment.
 
-    On an upright branch it is rounding. Of cycles on a mesh the multiplier that passes +1 tells there, as at the folds of canards.
+    On an upright branch this component is rounding. For cycles on a mesh the multiplier that crosses +1 is then the test, as at the folds of canards.
     """
     one, other = float(segment.a.tangent[-1]), float(segment.b.tangent[-1])
     if segment.engine.adaptive and _upright(segment):
@@ -39,12 +39,15 @@ def fold_tests(segment: Segment) -> list[Test]:
 
 
 def _upright(segment: Segment) -> bool:
-    """Whether the parameter's direction is rounding at an end of a segment."""
+    """Whether the parameter's component of the tangent is only rounding at an end of a segment."""
     return min(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= segment.engine.upright(segment.a.p)
 
 
 def turns_back(point: Point) -> bool:
-    """Whether the parameter turns back by more than rounding and the noise of the equations, or stands still where no other branch passes."""
+    """Whether a located zero is a fold: the parameter turns back by more than rounding and the noise of the equations.
+
+    On an upright segment of cycles on a mesh: whether the parameter is stationary and no other branch passes.
+    """
     assert isinstance(point, PointOnBranch) and point.segment is not None
     segment, engine = point.segment, point.engine
     if engine.adaptive and _upright(segment):
@@ -57,7 +60,7 @@ def turns_back(point: Point) -> bool:
 
 
 def fold_form(point: PointOnBranch) -> Classified:
-    """Coefficient a of p = p0 + a s^2, s the amplitude along the critical vector."""
+    """Return the coefficient a of p = p0 + a s^2, s the amplitude along the critical vector."""
     return Classified(None, fold_coefficient(point.engine, point.solved))
 
 
@@ -75,10 +78,10 @@ FOLD = Kind(
 
 
 def flips(segment: Segment, kind: str) -> list[Test]:
-    """Multipliers that pass -1, where the problem says that this is what they mean.
+    """Return the tests for multipliers that cross -1, if this means the given kind for the problem (its `flip_kind`).
 
-    Where a pair of them meets on the real axis, or leaves it, their ranks tell nothing; of cycles on meshes the product of all distances from -1 is continuous
-    there, as none passes through infinity.
+    If a complex pair meets on the negative real axis, or two real multipliers leave it as a pair, ranks are not continuous. For cycles on meshes the
+    product of all distances from -1 then is the test; it is continuous, as no multiplier passes through infinity.
     """
     engine = segment.engine
     if engine.problem.flip_kind != kind:
@@ -94,13 +97,16 @@ def flips(segment: Segment, kind: str) -> list[Test]:
 
 
 def _from_minus_one(engine: Engine, point: Solved) -> float:
-    """The product of (1 + multiplier) / (1 + |multiplier|): its sign is that of det(M + 1)."""
+    """Return the product of (1 + multiplier) / (1 + |multiplier|); its sign is that of det(M + 1)."""
     spectrum = engine.spectrum(point.row)
     return float(np.real(np.prod((1.0 + spectrum) / (1.0 + np.abs(spectrum)))))
 
 
 def alone_at_circle(point: Point) -> bool:
-    """Whether the multiplier nearest to -1 is there: if another one is nearer to it than that, two have met beside the circle and left the axis."""
+    """Whether the multiplier nearest to -1 really is -1 at a located zero.
+
+    If its distance from -1 is not small, and another multiplier is nearer to it than that, the two have met beside the circle and left the real axis.
+    """
     assert isinstance(point, PointOnBranch)
     spectrum = point.engine.spectrum(point.solved.row)
     gaps = np.nan_to_num(np.abs(spectrum + 1.0), nan=np.inf)
@@ -110,14 +116,12 @@ def alone_at_circle(point: Point) -> bool:
 
 
 def pairs(segment: Segment, spectrum: str) -> list[Test]:
-    """Complex pairs that pass the circle (the imaginary axis)."""
+    """Return the tests for complex pairs that cross the circle (the imaginary axis), for problems with this kind of spectrum."""
     return passing(segment, "pair") if segment.engine.detection == spectrum else []
 
 
 def classify_pair(point: PointOnBranch) -> Classified:
-    """The first Lyapunov coefficient, from derivatives of the equations; of cycles on a mesh, whose unknowns are more than the states of
-    a map, from the problem's own form.
-    """
+    """Return the first Lyapunov coefficient, from derivatives of the equations; for cycles on a mesh from the problem's `normal_form`."""
     problem = point.problem
     if problem.spectrum not in ("map", "flow"):
         return Classified()
@@ -136,7 +140,7 @@ def classify_pair(point: PointOnBranch) -> Classified:
     return Classified("supercritical" if form[0] < 0.0 else "subcritical", form[0], remarks)
 
 
-#: kinds whose tests are multipliers, in the order in which they are asked
+#: kinds whose tests are multipliers, in the order of the search
 PASSING = (
     Kind(
         "symmetry-breaking",
@@ -193,31 +197,31 @@ def _border(name: str, label: str, marker: str, text: str = "", filled: bool = T
     return Kind(name, label, text=text, marker=marker, filled=filled, border=True, leaves="beyond")
 
 
-#: borders that are met at once take the first of these names
+#: kinds of borders; where several borders are met at once, the first of them in this order gives the name
 _BORDERS = (
-    # friction holds what has come to rest, or lets it go
+    # at a turn friction becomes able to hold the body, or no longer is
     _border("stick", "ST", "<", "turn to stick"),
-    # a sliding velocity touches zero within a flight
+    # the sliding velocity touches zero within a flight
     _border("velocity-graze", "VG", "v"),
-    # a wall is touched without speed
+    # a wall is touched with zero velocity
     _border("wall-graze", "WG", ">"),
-    # an impact loses its speed, or a stick or flight its duration
+    # the speed of an impact, or the duration of a stick or flight, becomes zero
     _border("vanishing-event", "VE", "X"),
-    # the surface of a switch is touched without speed
+    # the surface of a switch is touched with zero velocity
     _border("switch-graze", "SG", "d"),
     # events of two contacts happen at once
     _border("corner", "CO", "P", "two events at once"),
-    # a solution comes to the surface between two pieces of the equations
+    # a solution reaches the surface between two pieces of piecewise-smooth equations
     _border("switch", "SW", "d", filled=False),
     # the period of a cycle grows without bound
     _border("homoclinic", "HC", "H", "homoclinic orbit"),
-    # a motion comes to touch an event that stops it
+    # a motion touches the surface of a terminal event
     _border("event", "EV", "8"),
 )
 
 
 USER = Kind("user", "US", text="user function", nothing="nothing leaves the zero of a user function")
-"""A number that the user has named passes a value; see :mod:`contvines.bifurcation.kind`."""
+"""Zero of a user function; see :mod:`contvines.bifurcation.kind`."""
 END = Kind(
     "end",
     "EP",
@@ -234,10 +238,10 @@ KINDS: tuple[Kind, ...] = (
     USER,
     END,
 )
-"""The built-in kinds along a branch, in the order in which they are asked."""
+"""The built-in kinds along a branch, in the order of the search."""
 
 MULTIPLIERS = (FOLD, *PASSING, BRANCH_POINT)
-# points of codimension two, found along a locus
+# points of codimension two, found along a locus: name, label, text
 _ROWS = (
     ("cusp", "CP", "cusp"),
     ("generalized-period-doubling", "GPD", "generalized period doubling"),
@@ -264,7 +268,7 @@ _ROWS = (
     ("double-border", "BB", "two borders"),
     ("degenerate-border", "DB", "degenerate border"),
 )
-#: one more margin vanishes there
+#: kinds of points of codimension two on loci of borders
 _ALONG_BORDERS = (
     "border-fold",
     "border-flip",
@@ -284,22 +288,22 @@ CRITICAL: frozenset[str] = frozenset(kind.name for kind in (*MULTIPLIERS, *CODIM
 BY_NAME: dict[str, Kind] = {kind.name: kind for kind in KINDS}
 LABELS: dict[str, str] = {kind.name: kind.label for kind in KINDS}
 BORDERS: tuple[str, ...] = tuple(kind.name for kind in KINDS if kind.border)
-#: names of files up to version 0.2 -> names of today
+#: names in files up to version 0.2 -> current names
 RENAMED = {"chatter": "vanishing-event"}
 
 
 def kind_named(name: str, own: Mapping[str, Kind] = BY_NAME) -> Kind:
-    """The kind of this name; a problem's own border kinds that are not in the table are borders drawn plainly."""
+    """Return the kind of this name, looked up in `own`, then among the built-in kinds; an unknown name gives a plain kind with label US."""
     return own.get(name) or BY_NAME.get(name) or CODIMENSION_TWO.get(name) or Kind(name, "US")
 
 
 def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
-    """The kinds that a diagram looks for.
+    """Check the kinds that a diagram looks for, and return them; None gives the built-in ones.
 
     Raises
     ------
     ValueError
-        If they are no list, one is no :class:`~contvines.Kind`, has no test function, or two share a name or a label.
+        If `kinds` is no list, an entry is no :class:`~contvines.Kind` or has no test function, or two kinds share a name or a label.
     """
     if not (kinds is None or isinstance(kinds, Iterable)):
         raise ValueError(
@@ -325,7 +329,15 @@ def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
 
 
 def critical(found: object, kind: str) -> object:
-    """The solution with its critical multipliers on the unit circle (eigenvalues on the axis), if the special point is of a kind that has them."""
+    """Return a solution whose critical multipliers are set exactly on the unit circle (eigenvalues: on the axis), if its kind has such multipliers.
+
+    Parameters
+    ----------
+    found : object
+        A solution, for example an orbit.
+    kind : str
+        Kind of the special point.
+    """
     if kind in CRITICAL and isinstance(found, Critical):
         return found.critical(Settings.critical)
     return found

@@ -1,7 +1,7 @@
-"""Errors of special points: by how much rounding, of the equations and of the Jacobian, and the mesh of a solution move them.
+"""Errors of special points: by how much rounding of the equations and of the Jacobian, and the mesh of a solution, move their parameter value.
 
-For the mesh the point is solved for on one with intervals half as long. On the plane across the branch at the point (beside it, where the
-equations are singular) both meshes have a solution. With s along the branch, its parameter p and a number g that vanishes at the special point,
+The error of the mesh comes from a solution on a mesh with intervals half as long. Both meshes have a solution on the plane across the branch at the
+point (beside it, if the equations are singular). With s along the branch, its parameter p and a function g that vanishes at the special point,
 
     p* on the finer mesh - p* = (p_finer - p) - (dp/ds) (g_finer - g) / (dg/ds),
 
@@ -25,22 +25,22 @@ from ..shared.numbers import EPSILON
 from .locate import Located, Segment
 from .settings import LOCATING
 
-ENTRY = 4.0 * EPSILON  # relative error of an entry: of several roundings, half a unit in the last place each
-SAMPLES = 4  # random signs of errors
-#: what the critical multiplier is at special points whose place it tells
+ENTRY = 4.0 * EPSILON  # relative error of an entry: several roundings of half a unit in the last place each
+SAMPLES = 4  # number of random vectors of errors
+#: kind -> value of its critical multiplier (for a pair: its modulus)
 CRITICAL = {"period-doubling": -1.0, "neimark-sacker": 1.0, "branch-point": 1.0, "symmetry-breaking": 1.0}
 SINGULAR = ("branch-point", "symmetry-breaking")
 
 
 def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -> Located:
-    """The event with an error that covers the rounding of what its eigenvalue was computed from.
+    """Return the event with its error enlarged to the rounding of its critical eigenvalue.
 
     Parameters
     ----------
     segment : Segment
     event : Located
     test : callable
-        The eigenvalue's test function, in units of the raw spectrum.
+        Test function of this eigenvalue, in units of the raw spectrum.
     """
     engine, a, b = segment.engine, segment.a, segment.b
     if engine.detection != "flow" or not isinstance(engine.problem, Blurred):
@@ -54,10 +54,10 @@ def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -
 
 
 def rounding_of_parameter(engine: Engine, point: Solved) -> float:
-    """By how much rounding of the equations moves the parameter of a solution along its branch, in the parameter's own unit.
+    """Return by how much rounding of the equations moves the parameter of a solution, in the parameter's own unit.
 
-    The inverse of [[F_u, F_p], [tangent]] takes errors of F there, of several roundings each. Three standard deviations, from a few random
-    signs. It grows like the inverse of the distance from a branch point.
+    The inverse of [[F_u, F_p], [tangent]] maps errors of F to errors of (u, p). The result is three standard deviations, estimated from a few vectors
+    of errors with random signs. It grows like the inverse of the distance from a branch point.
     """
     border = engine.weights * point.tangent
     engine.residual(point.u, point.p)
@@ -70,7 +70,7 @@ def rounding_of_parameter(engine: Engine, point: Solved) -> float:
 
 
 def singular_within(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> float:
-    """How far rounding of (F_u, F_p), and what differences are known to, may move the value at which a branch point lies.
+    """Return by how much rounding and difference errors of (F_u, F_p) may move the parameter value of a branch point.
 
     With the null vectors of M = [[F_u, F_p], [tangent]], M x = 0 = y M, errors E of the entries change y M x by up to |y| E |x|; it
     grows along the branch with the slope y M' x (perturbation of a simple singular value: Stewart and Sun, Matrix Perturbation Theory
@@ -92,7 +92,7 @@ def singular_within(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray
 
 
 def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> float:
-    """By how much the value of a branch point seems to be wrong: one Newton step for what is zero there.
+    """Return an estimate of the error of a branch point's parameter value: one Newton step for conditions that hold there.
 
     The derivatives of y.F along both directions of the kernel, the tangent t and the null vector x of M (y as for `singular_within`),
     vanish at a branch point: y F'' [t, t] a + y F'' [t, x] c = -y F' t and the same with x. Zero where the step cannot be obtained.
@@ -116,13 +116,13 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
 
 
 def _image(engine: Engine, left: np.ndarray, way: np.ndarray) -> float:
-    """y (F_u, F_p) times a direction, as linearised last."""
+    """Return y (F_u, F_p) v for a direction v, at the point linearised last; `left` is y, `way` is v."""
     work = _linearised(engine)
     return float(left @ (work.jacobian @ way[:-1] + work.derivative * way[-1]))
 
 
 def _linearised(engine: Engine) -> Linearised:
-    """The workspace of a problem made of Python callables, the only ones that doubt their entries."""
+    """Return the workspace as that of a problem made of Python callables; only these estimate errors of their entries."""
     assert isinstance(engine.work, Linearised)
     return engine.work
 
@@ -130,7 +130,7 @@ def _linearised(engine: Engine) -> Linearised:
 def _slope(
     engine: Engine, u: np.ndarray, p: float, way: np.ndarray, left: np.ndarray, vector: np.ndarray
 ) -> float:
-    """How y (F_u, F_p) x changes along a direction of length one in the metric."""
+    """Return the derivative of y (F_u, F_p) x along a direction of unit length in the metric; `left` is y, `vector` is x."""
     values = []
     offset = engine.settings.offset
     for side in (-offset, offset):
@@ -142,7 +142,7 @@ def _slope(
 def _null_vectors(
     engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Right and left null vector of [[F_u, F_p], [tangent]], the left one without the last entry, both with largest entry one."""
+    """Return the right and left null vectors of [[F_u, F_p], [tangent]], the left one without the last entry, both with largest entry one."""
     problem = engine.problem
     n, border = engine.n, engine.weights * tangent
     side = np.append(engine.row_sizes * np.random.default_rng(4).standard_normal(n), 0.0)
@@ -161,13 +161,13 @@ def _null_vectors(
 # ------------------------------------------------------------------ the mesh
 @runtime_checkable
 class Started(Adaptive, Protocol):
-    """A problem on a mesh whose finer one begins with given unknowns."""
+    """A problem on a mesh whose `refined` starts from the unknowns `u0`."""
 
     u0: np.ndarray
 
 
 class Special(BorderPoint, Protocol):
-    """A special point of a branch."""
+    """Protocol of a special point of a branch."""
 
     @property
     def kind(self) -> str: ...
@@ -176,12 +176,12 @@ class Special(BorderPoint, Protocol):
 
 
 def mesh_error(engine: Engine, special: Special) -> float | None:
-    """Error of the parameter at a special point, from a finer mesh; None where that cannot be obtained.
+    """Return the error of the parameter at a special point, from a finer mesh; None if it cannot be computed.
 
     Parameters
     ----------
     engine : Engine
-        Of a problem on a mesh.
+        Engine of a problem on a mesh.
     special : SpecialPoint
     """
     problem, settings = engine.problem, engine.settings
@@ -210,11 +210,12 @@ def mesh_error(engine: Engine, special: Special) -> float | None:
 
 
 def _moved(u: np.ndarray, p: float, tangent: np.ndarray, by: float) -> tuple[np.ndarray, float]:
+    """Return the point (u, p) moved along the tangent by a length in the metric."""
     return u + by * tangent[:-1], p + by * float(tangent[-1])
 
 
 def _vanishing(engine: Engine, special: Special, row: np.ndarray) -> float:
-    """The number that vanishes at a special point, from a row near it; zero where the point is no more than its parameter."""
+    """Return the function that vanishes at a special point (margin or critical multiplier), from a row near it; 0 for other kinds."""
     if special.margin_index is not None:
         return float(row[2 * engine.m + special.margin_index])
     if special.kind not in CRITICAL:

@@ -1,8 +1,8 @@
-"""One pass over a chunk of points: lengths, margins, multipliers and symmetric parts, from which detection begins.
+"""Scan: one pass over a chunk of points that computes lengths, margins, counts of multipliers and asymmetric parts; detection begins with these.
 
-The native core does it for compiled problems (native/scan.hpp), numpy for others. Multipliers are taken one by one
-(:func:`contvines.continuation.layout.multiplier`): the k-th largest real one is a test function of its own, so two that cross at once are two
-events. A product of test functions would not change sign.
+The native core scans chunks of compiled problems (native/scan.hpp), numpy those of others. The k-th largest real multiplier is a test function of
+its own (:func:`contvines.continuation.layout.multiplier`), so that two multipliers that cross at once give two events; a product of test functions
+would not change sign there.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from .settings import LOCATING
 if TYPE_CHECKING:
     from ..problems.protocol import Symmetry
 
-OPPOSITE = 0.9  # cosine of the angle between what is opposite, at least, but for the sign
+OPPOSITE = 0.9  # two vectors are opposite if the cosine of their angle is below minus this
 
 
 class Spectra(NamedTuple):
-    """Multipliers of n points.
+    """Multipliers of n points, in short.
 
     Attributes
     ----------
     near : ndarray, shape (n,)
-        Distance of the positive real one that is nearest to the circle, as a logarithm (for flows of the real part from the axis); NaN where
-        there is none, or one on the circle to rounding.
+        |log| of the positive real multiplier nearest to the circle (for flows: |eigenvalue| of the real one nearest to the axis); NaN without
+        such a multiplier, or with one on the circle to rounding.
     past : ndarray, shape (3, n)
-        How many are past the circle.
+        Numbers of multipliers outside the circle: real ones past 1, real ones past -1, complex pairs.
     """
 
     near: np.ndarray
@@ -43,25 +43,26 @@ class Spectra(NamedTuple):
 
 
 class Scan(NamedTuple):
-    """Of n points and the n - 1 segments between them, w margins and s symmetries.
+    """Result of a scan of n points and the n - 1 segments between them, with w margins and s symmetries.
 
     Attributes
     ----------
     lengths : ndarray, shape (n - 1,)
+        Lengths of the segments in the metric.
     smallest : ndarray, shape (n,)
-        Smallest margins, infinity without margins.
+        Smallest margin of each point, inf without margins.
     spectra : Spectra
     reached : ndarray, shape (n - 1,)
-        Not 0 where a multiplier may have reached the circle between two points and gone back; see `reached`.
+        Not 0 if a multiplier may have reached the circle between the two points and returned; see `reached`.
     low : ndarray, shape (w,)
-        Not 0 for margins that a parabola through three neighbours may bring to zero: below the lowest of three points it falls by a part of the
-        changes between them, at most a quarter of the square of the longer length over the shorter one.
+        Not 0 for margins that may dip to zero. The test is a cheap bound: the parabola through three neighbouring points falls below the lowest of
+        them by at most a quarter of the square of the longer length over the shorter one, times the larger of the changes between them.
     sizes : ndarray, shape (s, n)
-        Largest entry of the part that each symmetry changes.
+        Largest entry of the asymmetric part u - T(u) of each symmetry T.
     turns : ndarray, shape (s, n - 1)
-        Inner products of that part at both ends of segments: negative where it turns round.
+        Inner product of the asymmetric parts at both ends of each segment: negative if the part turns round.
     quiet : bool
-        Whether it is known that slopes, signs, multipliers and margins leave nothing to look for; False where it was not asked.
+        True if slopes, signs, multipliers and margins certainly show no special point; False if there may be one, or this was not tested.
     """
 
     lengths: np.ndarray
@@ -75,39 +76,51 @@ class Scan(NamedTuple):
 
 
 def scanner(engine: Engine, symmetries: Sequence[SymmetryTest]) -> Callable[[Chunk], Scan]:
-    """Scans chunks of one problem's branches."""
+    """Return a function that scans chunks of one problem's branches: in the native core if possible."""
     if engine.compiled and engine.plain and all(test.affine is not None for test in symmetries):
         return NativeScan(engine, symmetries)
     return partial(with_arrays, engine, symmetries)
 
 
 def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
-    """What the multipliers of some rows tell."""
+    """Return the summary of the multipliers of n rows."""
     with np.errstate(all="ignore"):
         sizes = sizes_by_sort(engine, rows)
         return Spectra(_nearest_of(sizes)[0], (sizes > LOCATING.past).sum(axis=2))
 
 
 def _nearest_of(sizes: np.ndarray) -> np.ndarray:
-    """The smallest sizes along the last axis; NaN where there are none, or one is rounding."""
+    """Return the smallest absolute sizes along the last axis; NaN without finite ones, or if the smallest is rounding."""
     near = np.fmin.reduce(np.abs(sizes), axis=-1, initial=np.inf)
     return np.where((near > LOCATING.past) & (near < np.inf), near, np.nan)
 
 
 def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments between neighbouring rows on which a multiplier may have reached the circle (the axis) and gone back, shape (n - 1,).
+    """Find the segments on which a multiplier may have reached the circle (the axis) and returned, shape (n - 1,).
 
-    In the plane of logarithms the circle is a line, and so is the axis in that of eigenvalues.
+    The tests use logarithms of multipliers, for which the circle is a straight line, and eigenvalues as they are; "the line" below is either.
+
+    Parameters
+    ----------
+    engine : Engine
+    rows : ndarray, shape (n, columns)
+        Multipliers and margins of consecutive points.
+    lengths : ndarray, shape (n - 1,)
+        Distances between these points.
     """
     return _dips(engine, rows, lengths) | _pairs_reached(engine, rows, lengths)
 
 
 def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments beside points at which a parabola, through these and their two neighbours, says that a real multiplier passes the line and comes back.
+    """Find the segments on which, by parabolas through three neighbouring points, a real multiplier may cross the line and return.
 
-    The parabola is that of the product of all distances from 1, and from -1 (of eigenvalues from 0), in parts of one plus the sizes: regular where two
-    multipliers change places or become a pair, and hardly changed by those that are far away. So is that of the nearest one, as two that pass
-    together leave the product positive. Those on the line to rounding are left out.
+    Two functions are tested:
+
+    * the product of all |m - 1| / (1 + |m|), and of all |m + 1| / (1 + |m|) (of eigenvalues |m| / (1 + |m|)): smooth where two multipliers
+      exchange ranks or become a pair, and hardly influenced by those far away;
+    * the distance of the nearest real multiplier, as two that cross together leave the product positive.
+
+    Multipliers on the line to rounding are left out.
     """
     found = np.zeros(len(lengths), dtype=bool)
     if engine.detection == "none" or not engine.m or len(lengths) < 2:
@@ -130,11 +143,16 @@ def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
 
 
 def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments on which one of a pair may have reached the line.
+    """Find the segments on which a multiplier of a complex pair may have reached the line.
 
-    A multiplier is the nearest one at the next point, be that real or one of a pair. It may have reached the line if it goes as far as both its
-    places at the ends of the segment are from the line, together; on two sides it has passed. It goes as far as from one place to the other, or as `Locating.faster` times the largest of its rates on this segment and those
-    beside it have it: rates towards the line, or, where two real ones become a pair on one of these, in any direction. On the line to rounding nothing tells.
+    A multiplier is identified with the nearest one at the next point, which may be real. It may have reached the line if the distance that it may
+    travel on the segment is at least the sum of its distances from the line at both ends. This distance is the larger of two numbers:
+
+    * the distance between its positions at the ends;
+    * `Locating.faster` times the largest rate on this segment and its two neighbours, times the length. Rates count towards the line only, but in any
+      direction if two real multipliers become a pair on one of these segments.
+
+    A multiplier on the line to rounding is not tested.
     """
     m, kind = engine.m, engine.detection
     re, im = rows[:, : 2 * m : 2], rows[:, 1 : 2 * m : 2]
@@ -169,14 +187,29 @@ def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.
 
 
 def _nearest(gaps: np.ndarray, numbers: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """Of each multiplier at one end of segments which one at the other is the nearest, and some numbers of both, (k, n - 1, m); 0 where there is none."""
+    """For each multiplier at one end of the segments, return the index of the nearest one at the other end, and the numbers of this couple.
+
+    Parameters
+    ----------
+    gaps : ndarray, shape (n - 1, m, m)
+        Distances; infinite for multipliers that are left out.
+    numbers : ndarray, shape (k, n - 1, m, m)
+        k numbers of each couple.
+    axis : int
+        Axis of the other end: 2 or 1.
+
+    Returns
+    -------
+    (ndarray of int, shape (n - 1, m), ndarray, shape (k, n - 1, m))
+        The numbers are 0 without a nearest multiplier.
+    """
     at = gaps.argmin(axis=axis)
     found = np.take_along_axis(numbers, np.expand_dims(at, (0, axis + 1)), axis + 1).squeeze(axis + 1)
     return at, np.where(gaps.min(axis=axis) < np.inf, found, 0.0)
 
 
 def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
-    """The reference."""
+    """Scan a chunk with numpy; the reference of the native core's scan."""
     steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
     margins = chunk.rows[:, 2 * engine.m :]
     gaps = [test.part(chunk.points, chunk.values) for test in symmetries]
@@ -199,7 +232,7 @@ def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk
 
 
 class NativeScan:
-    """The same in the native core, for symmetries that are signed permutations."""
+    """Scan of chunks in the native core, for symmetries that are signed permutations plus a constant."""
 
     def __init__(self, engine: Engine, symmetries: Sequence[SymmetryTest]) -> None:
         self.engine, k, n = engine, len(symmetries), engine.n
@@ -218,7 +251,7 @@ class NativeScan:
     def __call__(self, chunk: Chunk) -> Scan:
         """Scan a chunk."""
         n, k, w = len(chunk), self.symmetries, self.margins
-        places = 11 * n * self.engine.m  # room for those of multipliers
+        places = 11 * n * self.engine.m  # work space for multipliers
         found = np.empty(10 * n - 2 + w + k * (2 * n - 1) + places)
         quiet = _native()(
             address(self.frame), n, self.engine.upright(float(chunk.values[0])), place(chunk.points), place(chunk.values),
@@ -243,12 +276,12 @@ def _native() -> Callable[..., int]:
     return function("core_scan", WHOLE, POINTER, WHOLE, NUMBER, *[POINTER] * 6)
 
 
-# ------------------------------------------------------------------ multipliers past the circle
+# ------------------------------------------------------------------ multipliers outside the circle
 def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
-    """How far past the circle multipliers are, shape (3, ..., m): real ones near 1, near -1, and complex pairs; NaN where they are of another sort.
+    """Return by how much multipliers are outside the circle, by sort: positive real, negative real, complex pairs; shape (3, ..., m).
 
-    As logarithms; for flows real parts (there is nothing near -1). Where only branch points are looked for ("real") all count as real, so
-    that a double one, which rounding makes a pair or two, counts twice either way.
+    The numbers are log|m|, for flows the real parts (the second sort is then empty); NaN for multipliers of another sort. For problems with branch
+    points only ("real") all eigenvalues count as real: a double one, which rounding may split into a pair, then always counts twice.
     """
     re, im, kind = rows[..., : 2 * engine.m : 2], rows[..., 1 : 2 * engine.m : 2], engine.detection
     with np.errstate(all="ignore"):
@@ -265,15 +298,15 @@ def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
 
 
 def counts(engine: Engine, rows: np.ndarray) -> np.ndarray:
-    """How many multipliers are past the circle: real ones past 1, past -1, and complex pairs; shape (..., 3)."""
+    """Return the numbers of multipliers outside the circle: real ones past 1, past -1, and complex pairs; shape (..., 3)."""
     return np.moveaxis((sizes_by_sort(engine, rows) > LOCATING.past).sum(axis=-1), 0, -1)
 
 
 def balance(engine: Engine, rows: np.ndarray) -> np.ndarray:
-    """Smallest number past the circle plus the largest before it, of the real multipliers of each row; 0 without both.
+    """Return, for the real multipliers of each row, the smallest positive log|m| plus the largest negative one; 0 without both.
 
-    Where one multiplier leaves while another enters at the same place, as at branch points with the symmetry of a triangle, no
-    count changes, but this sum passes through zero.
+    Where one multiplier leaves the circle while another enters, as at branch points with the symmetry of a triangle, no
+    count changes, but this sum crosses zero.
     """
     size = sizes_by_sort(engine, rows)[0]
     past = np.where(size > 0.0, size, np.inf).min(axis=-1, initial=np.inf)
@@ -283,7 +316,7 @@ def balance(engine: Engine, rows: np.ndarray) -> np.ndarray:
 
 
 def pairs_past(engine: Engine, rows: np.ndarray) -> np.ndarray:
-    """Of eigenvalues that all count as real ones ("real"), how many are past the axis in pairs that rounding has not made; shape (...)."""
+    """Return the number of eigenvalues right of the axis in complex pairs that are more than rounding, for "real" problems; shape (...)."""
     re, im = rows[..., : 2 * engine.m : 2], np.abs(rows[..., 1 : 2 * engine.m : 2])
     unit = np.minimum(np.hypot(re, im).max(axis=-1, keepdims=True, initial=0.0), 1.0)
     return ((re > LOCATING.past) & (im > engine.settings.critical * unit)).sum(axis=-1)
@@ -292,7 +325,7 @@ def pairs_past(engine: Engine, rows: np.ndarray) -> np.ndarray:
 def parabola_dips(
     left: np.ndarray, middle: np.ndarray, right: np.ndarray, h1: np.ndarray | float, h2: np.ndarray | float
 ) -> np.ndarray:
-    """Whether the parabola through three positive values at such distances passes zero between them."""
+    """Whether the parabola through three positive values, at distances h1 and h2, dips below zero between them."""
     with np.errstate(all="ignore"):
         before, after = (middle - left) / h1, (right - middle) / h2
         bend, slope = (after - before) / (h1 + h2), (before * h2 + after * h1) / (h1 + h2)
@@ -301,25 +334,35 @@ def parabola_dips(
         return found & (middle - 0.25 * slope * slope / bend < 0.0)
 
 
-# ------------------------------------------------------------------ what a symmetry changes
+# ------------------------------------------------------------------ the asymmetric part of a solution
 @lru_cache(maxsize=64)
 def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Twice n numbers without a pattern, multiples of irrational numbers, and the order of the first ones."""
+    """Return two vectors of n irregular numbers in [0.1, 0.9], and the sorting order of the first one."""
     probe, check = (0.1 + 0.8 * np.modf(np.sqrt(a) * np.arange(1.0, n + 1.0))[0] for a in (2.0, 3.0))
     return probe, check, np.argsort(probe, kind="stable")
 
 
 def image_of(symmetry: Symmetry, u: np.ndarray, p: float) -> np.ndarray:
-    """The image of a solution (u, p)."""
+    """Return the image of a solution (u, p) under a symmetry."""
     image = symmetry.apply(u)
     return image if symmetry.offset is None else image + symmetry.offset(p)
 
 
 class SymmetryTest:
-    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
+    """Test function for a symmetry T: the asymmetric part u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 
-    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks. Where T depends on the
-    parameter it is asked at each point. ``shift`` is not zero, ``scale`` not one all over: else they are None.
+    T is usually a signed permutation plus a constant. This is detected once, and T then applied to whole chunks (`affine` is its order, signs
+    and constant). If T depends on the parameter it is evaluated at each point.
+
+    Parameters
+    ----------
+    symmetry : Symmetry
+    n : int
+        Number of unknowns.
+    shift : ndarray, shape (n,), optional
+        Change of the unknowns by a shift of one period; None if zero.
+    scale : ndarray, shape (n,), optional
+        Typical sizes of the unknowns; None if all are one.
     """
 
     def __init__(
@@ -344,10 +387,10 @@ class SymmetryTest:
             self.affine = None
 
     def part(self, points: np.ndarray, values: Sequence[float] | np.ndarray) -> np.ndarray:
-        """u - T(u) for points of shape (n, N) at parameter values of shape (n,)."""
+        """Return u - T(u), shape (n, N), for points of shape (n, N) at parameter values of shape (n,)."""
         if self.affine is not None:
             order, signs, constant = self.affine
-            gap = np.take(points, order, axis=1)  # of long branches a large array: worked on in place
+            gap = np.take(points, order, axis=1)  # may be large: changed in place
             gap *= signs
             gap += constant
             np.subtract(points, gap, out=gap)
@@ -360,7 +403,7 @@ class SymmetryTest:
         return gap if self.scale is None else gap / self.scale
 
     def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Derivative of T at u applied to v."""
+        """Return the derivative of T at u, applied to v."""
         if self.affine is not None:
             order, signs, _ = self.affine
             return signs * v[order]
@@ -369,10 +412,20 @@ class SymmetryTest:
 
 
 def turns_round(test: SymmetryTest, parts: np.ndarray, least: float, accuracy: float = np.inf) -> bool:
-    """Whether the part that a symmetry changes has turned round between two points, shape (2, N).
+    """Whether the asymmetric part has turned round between two points.
 
-    Both are larger than noise; or all their many unknowns are opposite, as those of noise are not: of a cycle on a mesh, known to an accuracy, that has
-    become one of half the period, or an equilibrium.
+    Both parts must be larger than noise. Smaller ones count if their directions are nearly opposite in all unknowns, unlike noise, where a cycle on a
+    mesh becomes one of half the period, or an equilibrium.
+
+    Parameters
+    ----------
+    test : SymmetryTest
+    parts : ndarray, shape (2, N)
+        Asymmetric parts at the two points.
+    least : float
+        Largest entry from which a part is larger than noise.
+    accuracy : float
+        Accuracy of a cycle on a mesh; inf for other problems.
     """
     along = float(parts[0] @ parts[1])
     if not along < 0.0:

@@ -1,4 +1,4 @@
-"""Tolerances of special points that nobody sets, by subject; those that users set are :class:`contvines.Settings`."""
+"""Fixed tolerances of detection, location, switching and normal forms, by subject; users set those of :class:`contvines.Settings`."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Locating:
-    """Zeros of test functions on a segment, and when a place counts as known.
+    """Location of zeros of test functions on a segment, and its accuracy.
 
     Attributes
     ----------
     bracket : float
-        Width of the final bracket, in parts of the segment.
+        Width of the final bracket, relative to the segment.
     jump : float
-        A test that differs by more than this across the final bracket has a jump there.
+        A test function that differs by more than this across the final bracket has a jump there.
     rounding : float
-        Part of a number by which another one differs through rounding: an image from a signed permutation of the unknowns, say.
+        Largest relative difference of two numbers that counts as rounding: for example of a symmetry from a signed permutation of the unknowns.
     halved : float
-        Part of the last Newton correction that may be left.
+        Error of a solution, relative to the last Newton correction.
     noisy : float
-        Times the noise of the equations: places are no better than this, and matrices no nearer to singular ones.
+        Factor on the noise of the equations: limit of the accuracy of positions, and of the distance to a singular matrix.
     past : float
-        How far past the circle (the axis) a multiplier is more than rounding; native/scan.hpp has the same.
+        A multiplier (eigenvalue) is outside the circle (axis) from this distance on; less is rounding. Same value in native/scan.hpp.
     faster : float
-        Times the rate that three neighbouring segments tell that a pair may go at on the middle one; native/scan.hpp has the same.
+        A pair may move on a segment this many times as fast as on it and its two neighbours. Same value in native/scan.hpp.
     bent : float
-        Condition of the second derivatives from which one Newton step for a branch point says nothing; the demo "chu" meets singular ones.
+        Condition number of the matrix of second derivatives from which the Newton step for a branch point is not used; it is singular in the demo "chu".
     """
 
     bracket: float = 1e-12
@@ -46,7 +46,8 @@ class Leaving:
     Attributes
     ----------
     slanted, grazing : float
-        How far off such a point may be, in amplitudes, where two branches cross at a small angle; and if nothing is found at that.
+        Largest distance of a first point from the special point, in amplitudes: large where two branches cross at a small angle. The second value is
+        tried if none is found with the first.
     """
 
     slanted: float = 300.0
@@ -55,25 +56,26 @@ class Leaving:
 
 @dataclass(frozen=True)
 class Limits:
-    """One-sided limits at borders; distances are in the metric, differences of polynomials are parts of their largest coefficient.
+    """One-sided limits at borders; distances are in the metric, differences of polynomials are relative to their largest coefficient.
 
     Attributes
     ----------
     tangent : float
-        How far the cosine of a tangent to the extrapolated one may be from 1; else it is rounding.
+        Largest 1 - cosine between a computed tangent and the extrapolated one; else the computed one is rounding.
     distances : tuple of float
-        Spacings of the points before a border from which is extrapolated.
+        Spacings of the points before a border that are used for extrapolation.
     nearest : tuple of float
-        Spacings at which it shows that what grew is bounded after all.
+        Spacings that show whether growing coefficients are bounded after all.
     agreeing : float
-        Difference of a limit from what is computed at the border, where both are one.
+        Largest difference between a limit and the value computed at the border for which both count as equal.
     smooth, growing : float
-        Difference of extrapolations from two spacings that have converged: without and with multipliers that grow without bound. The latter
-        also from what is computed at the border, and of products of a margin and what grows as its inverse.
+        Difference of extrapolations from two spacings below which they have converged: without and with multipliers that grow without bound. The latter
+        also bounds the difference from values computed at the border, and the variation of products of a margin and a coefficient that grows like its
+        inverse.
     straight : float
-        Distance before a short segment up to which its branch is looked for along the tangent.
+        Largest distance before a short segment at which points of its branch are sought along the tangent.
     unbounded : float
-        Size that stands for a multiplier that grows without bound.
+        Size that represents a multiplier that grows without bound.
     """
 
     tangent: float = 1e-10
@@ -93,19 +95,19 @@ class NormalForms:
     Attributes
     ----------
     step : float
-        Distance (in the metric) of points beside a special point, from which derivatives along the branch are taken; the longest that is tried.
+        Largest distance (in the metric) between a special point and points beside it, from which derivatives along the branch are computed.
     enough : float
-        Relative difference of derivatives from two radii that asks for no other.
+        Relative difference of derivatives from two radii below which no other radius is tried.
     narrowest : float
         Smallest radius of samples, in units of the unknowns.
     cutoff : float
-        Singular values below this part of the largest are zeros.
+        Singular values below this part of the largest count as zeros.
     unsure : float
-        A coefficient whose error exceeds this part of it, or of its natural size, is not known.
+        Largest error of a coefficient, relative to it or to its natural size, with which it counts as known.
     digits : float
-        The same of the coefficients at points of codimension two, from samples, and of derivatives along the branch from a step and half of it.
+        The same for coefficients at points of codimension two, and for derivatives along the branch from a step and half of it.
     resonant : float
-        Angle between a pair and a strong resonance at which the coefficient no longer decides.
+        Angle between a multiplier and a strong resonance below which a remark names the resonance.
     """
 
     step: float = 1e-3
