@@ -1,21 +1,19 @@
-"""Special points: closed forms and brute-force roots inside the balls, borders from either side, pieces, the errata."""
+"""Special points: closed forms and brute-force roots inside the balls, borders from either side, pieces."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf, pi, sqrt
+from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
 import contvines as cv
-from orbits import Cavity, Coupled
+from orbits import Cavity
 from orbits.proofs.checker import Refused, check
 from orbits.proofs.obstacles import ProofError
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, COUPLED
+from tests.orbits.proofs.papers import checked, holds
 
 pytestmark = pytest.mark.slow
-
-ERRATA = Path(__file__).parents[3] / "examples" / "certificates" / "errata.json"
 
 
 @pytest.fixture(scope="module")
@@ -24,14 +22,12 @@ def graph():
     return cv.diagram(seed, over="amplitude", within=(0.24, 0.9), depth=1)
 
 
-def value(proof):
-    middle, radius = proof.value
-    return mpf(middle), mpf(radius)
-
-
-def verified(proof):
-    check(json.loads(json.dumps(proof.certificate())))
-    return True
+def proof_of(kind, orbit, parameter="amplitude", **options):
+    """The proof of a special point at an orbit beside it."""
+    problem = orbit.problem(parameter)
+    proof = problem.prove(kind, *orbit.seed(problem), **options)
+    assert proof.existence and proof.real is True and checked(proof)
+    return proof
 
 
 def test_fold_and_symmetry_breaking_have_their_closed_forms(graph):
@@ -40,13 +36,10 @@ def test_fold_and_symmetry_breaking_have_their_closed_forms(graph):
         R, H = (1 - r) / (1 + r), pi / 2 * mpf("1.006") * mpf("0.5") * mpf("0.211")
         for kind, below in (("fold", pi**2 + 4 * R**2), ("symmetry-breaking", pi**2 - 4)):
             beta = (2 * pi - 4 * R * H) / below
-            expected = sqrt((1 - pi * beta / 2) ** 2 + (R * beta + H) ** 2)
             (point,) = (p for p in graph.of_kind(kind) if p.branch == "B1")
             proof = point.prove()
-            middle, radius = value(proof)
-            assert abs(middle - expected) < radius + mpf(10) ** -44
-            assert proof.radius < 1e-20 and proof.transversal and proof.real is True
-            assert verified(proof)
+            assert holds(proof.value, sqrt((1 - pi * beta / 2) ** 2 + (R * beta + H) ** 2))
+            assert proof.radius < 1e-20 and proof.transversal
 
 
 def test_every_special_point_of_the_graph_is_proved_and_verified(graph):
@@ -55,60 +48,63 @@ def test_every_special_point_of_the_graph_is_proved_and_verified(graph):
     for label, proof in proofs.items():
         assert proof.existence and proof.radius <= 1e-10, label
         assert proof.real is graph.special[label].real, label
-        assert verified(proof), label
+        checked(proof)
     assert "proved" in str(graph)
     assert graph.to_dict()["proofs"]["SB1"]["existence"] is True
 
 
-def test_pure_sliding_begins_where_den_hartog_says():
+@pytest.mark.parametrize(
+    ("kind", "margin", "friction", "amplitude"),
+    [
+        ("stick", 1, "0.5", lambda h: h * sqrt(1 + 4 / pi**2)),
+        ("wall-graze", 2, "0.2", lambda h: sqrt(1 + h * h)),
+    ],
+)
+def test_pure_sliding_begins_where_den_hartog_says_and_ends_at_the_walls(kind, margin, friction, amplitude):
+    """It turns at w = -+ sqrt(C^2 - h^2)."""
     with mp.workdps(45):
-        h = pi / 2 * mpf("1.006") * mpf("0.5") * mpf("0.211")
-        expected = h * sqrt(1 + 4 / pi**2)
-        orbit = ABSORBER.orbit("tt", 1, amplitude=float(expected))
-        problem = orbit.problem("amplitude", symmetric=True)
-        proof = problem.prove("stick", *orbit.seed(problem), margin=1)
-        middle, radius = value(proof)
-        assert abs(middle - expected) < radius + mpf(10) ** -44
-    assert proof.real is True
+        expected = amplitude(pi / 2 * mpf("1.006") * mpf(friction) * mpf("0.211"))
+        orbit = ABSORBER.changed(friction=float(friction)).orbit("tt", amplitude=float(expected))
+        assert holds(proof_of(kind, orbit, margin=margin).value, expected)
 
 
 def test_a_neimark_sacker_point_of_the_coupled_machine():
-    machine = Coupled(
-        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, forcing=2.47, damping=1.0
-    )
-    orbit = machine.symmetric_orbit(frequency=1.02540971532)
-    problem = orbit.problem("frequency", symmetric=True)
-    proof = problem.prove("neimark-sacker", *orbit.seed(problem))
-    assert proof.existence and proof.radius <= 1e-10 and proof.real is True
-    assert verified(proof)
-    middle, _ = value(proof)
-    # the modulus of the pair changes sides there
-    sizes = [
-        max(abs(machine.symmetric_orbit(frequency=float(middle) + side).half_multipliers))
-        for side in (-1e-6, 1e-6)
-    ]
-    assert min(sizes) < 1.0 < max(sizes)
+    proof = proof_of("neimark-sacker", COUPLED.symmetric_orbit(frequency=1.02540971532), "frequency")
+    assert proof.radius <= 1e-10
+    beside = [COUPLED.symmetric_orbit(frequency=float(proof.value[0]) + side) for side in (-1e-6, 1e-6)]
+    sizes = [abs(orbit.half_multipliers).max() for orbit in beside]
+    assert min(sizes) < 1.0 < max(sizes)  # the modulus of the pair changes sides there
 
 
 def test_the_bouncing_ball_doubles_where_its_closed_form_says():
     """One bounce per period: a fold at A = pi (1 - r)/(1 + r), a doubling at A^2 = A_fold^2 + (2 (1 + r^2)/(1 + r)^2)^2 (g = 1)."""
     machine = Cavity(
-        restitution=0.8,
-        friction=0.0,
-        gravity=1.0,
-        slope=float(np.pi / 2),
-        distance_left=1000.0,
-        mass_ratio=0.0,
-    )
+        restitution=0.8, friction=0.0, gravity=1.0, slope=float(np.pi / 2), distance_left=1000.0, mass_ratio=0.0
+    )  # fmt: skip
     r = mpf("0.8")
     with mp.workdps(30):
-        square = (mp.pi * (1 - r) / (1 + r)) ** 2 + (2 * (1 + r**2) / (1 + r) ** 2) ** 2
-        orbit = machine.orbit("R", 1, amplitude=float(mp.sqrt(square)))
-        problem = orbit.problem("amplitude", symmetric=False)
-        proof = problem.prove("period-doubling", *orbit.seed(problem))
-        # the slope is the decimal next to pi/2, 6e-17 from it
-        assert proof.existence and proof.real and abs(value(proof)[0] - mp.sqrt(square)) < mpf("1e-15")
-    assert verified(proof)
+        expected = sqrt((pi * (1 - r) / (1 + r)) ** 2 + (2 * (1 + r**2) / (1 + r) ** 2) ** 2)
+        proof = proof_of("period-doubling", machine.orbit("R", amplitude=float(expected)))
+        assert holds(proof.value, expected, "1e-15")  # the slope is the decimal next to pi/2, 6e-17 from it
+
+
+def test_a_bouncing_ball_reaches_the_other_wall():
+    """Without friction the ball neither knows the left wall nor touches it, until the wall stands where it turns back."""
+    with mp.workdps(45):
+        b = mpf("1.05") * mpf("0.7") * sin(mpf("0.9"))
+        C = mpf("1.3")
+        speed = b * pi  # w'+ - v' = -B+, and B+ = -pi b over one period
+        psi = -mp.acos(-mpf("0.4") / mpf("1.6") * pi * b / C)
+        top = findroot(lambda x: C * cos(x) + speed - b * (x - psi), psi + speed / b)
+        height = -mpf("0.8") + C * (sin(top) - sin(psi)) + speed * (top - psi) - b * (top - psi) ** 2 / 2
+        machine = Cavity(
+            restitution=0.6, friction=0.0, gravity=0.7, slope=0.9, mass_ratio=0.05, distance_right=0.8,
+            distance_left=float(height),
+        )  # fmt: skip
+        orbit = machine.orbit("R", 1, amplitude=1.3)
+        assert np.exp(1j * orbit.nodes[0, 0]) == pytest.approx(np.exp(1j * float(psi)), abs=1e-9)
+        assert abs(orbit.margins[0].value) < 1e-9
+        assert holds(proof_of("wall-graze", orbit, "distance_left", margin=0).value, height, "1e-40")
 
 
 def test_an_ordinary_orbit_is_no_special_point(graph):
@@ -123,15 +119,13 @@ def test_an_ordinary_orbit_is_no_special_point(graph):
 
 def test_an_inequality_is_left_out_only_at_its_border():
     """To name a margin does not excuse an orbit from it."""
-    virtual = ABSORBER.orbit("tt", 1, amplitude=0.18).prove()
-    wrong = json.loads(json.dumps(virtual.certificate()))
-    check(wrong)
+    wrong = checked(ABSORBER.orbit("tt", 1, amplitude=0.18).prove())
     wrong["claims"]["real"] = True
+    (box,) = wrong["boxes"]
     for i in range(len(wrong["events"])):
         for side in (1, -1):
-            wrong["boxes"][0]["conditions"] = [["flight", i, side]]
             for kind in (None, "border"):
-                wrong["boxes"][0]["kind"] = kind
+                box |= {"kind": kind, "conditions": [["flight", i, side]]}
                 with pytest.raises(Refused):
                     check(wrong)
 
@@ -143,7 +137,7 @@ def test_a_stretch_goes_up_to_its_special_points(graph):
     piece = next(p for p in proof.pieces if "symmetry-breaking" in p.ends and p.stable is False)
     assert piece.existence and piece.real is True and piece.ends == ("symmetry-breaking", None)
     with mp.workdps(45):
-        assert 0 < mpf(piece.covered[0]) - value(breaking.prove())[0] < mpf("1e-10")
+        assert 0 < mpf(piece.covered[0]) - mpf(breaking.prove().value[0]) < mpf("1e-10")
     short = json.loads(json.dumps(piece.certificate()))
     short["boxes"] = short["boxes"][:7]
     check(short)
@@ -151,25 +145,3 @@ def test_a_stretch_goes_up_to_its_special_points(graph):
     short["claims"]["stable"] = True
     with pytest.raises(Refused):
         check(short)
-
-
-# ------------------------------------------------------------------ the errata
-def test_the_certificates_of_the_errata():
-    made = json.loads(ERRATA.read_text())
-    claims = {name: (c["claims"]["real"], c["claims"]["stable"]) for name, c in made.items()}
-    assert claims == {
-        "doubling of the printed maps": (False, None),
-        "doubling of the machine": (True, None),
-        "pure sliding begins": (True, None),
-        "sliding above the printed bound": (False, True),
-        "stick-slip above the printed bound": (True, True),
-        "two periods at 0.986": (False, True),
-        "one period at 0.986": (True, True),
-    }
-    for certificate in made.values():
-        check(certificate)
-    square = {
-        name: mpf(c["boxes"][1]["parameter"][0]) ** 2 for name, c in made.items() if len(c["boxes"]) == 3
-    }
-    assert abs(square["doubling of the printed maps"] - mpf("0.86787")) < 5e-6
-    assert abs(square["doubling of the machine"] - mpf("1.128")) < 5e-4
