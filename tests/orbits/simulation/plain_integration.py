@@ -2,7 +2,8 @@
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+
+from tests.orbits.machines.coupled.equations_of_motion import TIGHT, event
 
 
 def events_of(amplitude, omega, pull, frictions, walls, restitutions, start, count):
@@ -10,52 +11,37 @@ def events_of(amplitude, omega, pull, frictions, walls, restitutions, start, cou
 
     Frictions, places of the walls and restitutions are given by the direction of motion, 1 and -1.
     """
-    psi, w, rate = start
-    events = []
+    first, w, rate = start
+    t, events = 0.0, []
 
-    def push(phase):
-        return -amplitude * omega**2 * np.sin(phase) - pull
+    def push(t):
+        return -amplitude * omega**2 * np.sin(first + omega * t) - pull
 
-    def reserve(s, phase):
-        return frictions[s] - s * push(phase)
+    def reserve(s):
+        return event(lambda t, y: frictions[s] - s * push(t), -1)
 
     def way_from_rest():
-        return next((s for s in (1, -1) if reserve(s, psi) < -1e-12), 0)
+        return next((s for s in (1, -1) if reserve(s)(t, None) < -1e-12), 0)
 
     mode = int(np.sign(rate)) or way_from_rest()
     while len(events) < count:
+
+        def rates(t, y, s=mode):
+            return y[1], push(t) - s * frictions[s] if s else 0.0
+
+        wall = event(lambda t, y, s=mode: s * (walls[s] - y[0]), -1)
+        stops = event(lambda t, y, s=mode: s * y[1], -1)
+        watch = (wall, stops) if mode else (reserve(1), reserve(-1))
+        run = solve_ivp(rates, (t, t + 60.0), (w, rate), events=watch, max_step=0.1, **TIGHT)
+        t, (w, rate) = run.t[-1], run.y[:, -1]
         if mode == 0:
-            grid = psi + np.linspace(0.0, 2.0 * np.pi, 4001)
-            gives = {
-                s: np.flatnonzero((reserve(s, grid)[1:] < 0.0) & (reserve(s, grid)[:-1] >= 0.0))
-                for s in (1, -1)
-            }
-            mode = min((s for s in gives if gives[s].size), key=lambda s: gives[s][0])
-            i = gives[mode][0]
-            psi = brentq(lambda x, s=mode: reserve(s, x), grid[i], grid[i + 1], xtol=1e-15)
-            events.append(("u", psi, w, 0.0))
-            continue
-
-        def motion(tau, y, s=mode, begin=psi):
-            return y[1], push(begin + omega * tau) - s * frictions[s]
-
-        def stops(tau, y, s=mode):
-            return s * y[1] if tau > 1e-6 else 1.0
-
-        def wall(tau, y, s=mode):
-            return s * (walls[s] - y[0])
-
-        stops.terminal = wall.terminal = True
-        stops.direction = wall.direction = -1
-        options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "max_step": 0.1}
-        run = solve_ivp(motion, (0.0, 60.0), (w, rate), events=(stops, wall), **options)
-        psi, (w, rate) = psi + omega * run.t[-1], run.y[:, -1]
-        if run.t_events[1].size:
+            letter, mode = "u", 1 if run.t_events[0].size else -1
+        elif run.t_events[0].size:
             w, rate = walls[mode], -restitutions[mode] * rate
             letter, mode = "L" if mode > 0 else "R", -mode
         else:
             rate, before = 0.0, mode
             mode = way_from_rest()
             letter = "t" if mode == -before else "s"
-        events.append((letter, psi, w, rate))
+        events.append((letter, first + omega * t, w, rate))
     return events

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled
-from orbits.design import record
-from orbits.flows.native import batches
-from orbits.flows.native.simulator import first_state, skip
-from orbits.machines.names import usual
-from orbits.machines.native_stepper import stepper
+from orbits.design.record import recorded
+from orbits.flows.catalogue import simulator_of
+from orbits.flows.native.batches import lyapunov
+from tests.machines import ABSORBER, COUPLED
 
 pytestmark = [
     pytest.mark.slow,
@@ -20,68 +19,45 @@ pytestmark = [
         reason="needs a timer that interrupts the main thread",
     ),
 ]
+PARAMS = ABSORBER.vector({"amplitude": 0.55})
+TIMES = np.arange(0.0, 1e6, 0.5)
+# swings slowly below its absorber, which friction holds for ever
+HELD = Coupled(
+    restitution=0.5, friction=1.0, gravity=1.0, mass_ratio=0.1, damping=0.01, forcing=0.3, frequency=0.02
+)
+FREE = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
 
 
-def many_starts(name, workers):
-    model, given = usual(name)
-    engine = stepper(name)
-    states = np.zeros((10**5, engine.state))
-    states[:, :3] = np.random.default_rng(0).uniform([0, -1, -1], [6, 1, 1], (10**5, 3))
-    batches.settle_all(
-        name, states, model.vector(given), transients=(3e3,), longest=24, tolerance=0.0, workers=workers
-    )
+def simulator(model, start, **values):
+    found = simulator_of(model, model.vector(values))
+    found.put(start)
+    return found
 
 
-def growth():
-    model, given = usual("absorber")
-    engine, params = stepper("absorber"), model.vector(given)
-    state = first_state(model, engine, params, {"w_rate": 1.0})
-    while True:
-        batches.lyapunov("absorber", state, params, periods=10**6)
-
-
-def without_events():
-    """An oscillator that swings slowly below its absorber, which friction holds for ever."""
-    model = Coupled(
-        restitution=0.5, friction=1.0, gravity=1.0, mass_ratio=0.1, damping=0.01, forcing=0.3, frequency=0.02
-    )
-    engine, params = stepper("coupled"), model.vector({})
-    while True:
-        skip(engine, first_state(model, engine, params, {"w": 0.3}), params, 1e7, 10**9)
-
-
-def slow_drift():
-    model = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
-    engine, params = stepper("absorber"), model.vector({"amplitude": 1e-9})
-    while True:
-        skip(engine, first_state(model, engine, params, {"w_rate": 1e-7}), params, 1e6, 10**9)
-
-
-def long_record():
-    times = np.arange(0.0, 1e6, 0.5)
-    model = Coupled(restitution=0.3, friction=0.4, gravity=0.5, mass_ratio=0.1, damping=0.8, forcing=1.0)
-    while True:
-        record.recorded(model, model.vector(), times, np.sin(times) * np.sin(0.1 * times))
+def many_starts(model, workers, **values):
+    points = np.random.default_rng(0).uniform(-1.0, 1.0, (10**5, model.node + 1))
+    simulator(model, None, **values).settle_all(points, 24, workers)
 
 
 @pytest.mark.parametrize(
     "work",
     [
-        lambda: many_starts("absorber", 1),
-        lambda: many_starts("absorber", 2),
-        lambda: many_starts("coupled", 1),
-        growth,
-        without_events,
-        slow_drift,
-        long_record,
+        lambda: many_starts(ABSORBER, 1, amplitude=1.5),
+        lambda: many_starts(ABSORBER, 2, amplitude=1.5),
+        lambda: many_starts(COUPLED, 1, frequency=1.0),
+        lambda: lyapunov("absorber", simulator(ABSORBER, {"w_rate": 1.0}, amplitude=0.55).state, PARAMS, 10**6),
+        lambda: simulator(HELD, {"w": 0.3}).skip(1e7),
+        lambda: simulator(FREE, {"w_rate": 1e-7}, amplitude=1e-9).skip(1e6),
+        lambda: recorded(COUPLED, COUPLED.vector({"frequency": 1.0}), TIMES, np.sin(TIMES) * np.sin(0.1 * TIMES)),
     ],
-)
+)  # fmt: skip
 def test_an_interrupt_ends_a_native_loop(work):
     before = signal.signal(signal.SIGALRM, signal.default_int_handler)
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.3)
         with pytest.raises(KeyboardInterrupt):
-            work()
+            while True:
+                work()
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
