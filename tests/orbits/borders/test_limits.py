@@ -8,8 +8,7 @@ from contvines.bifurcation.locate import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
-from orbits.attractors import find_attractor
-from orbits.flows import simulator_of
+from orbits.flows.catalogue import simulator_of
 from orbits.simulation.replaying import monodromy
 from orbits.starts.find import polish
 from tests.machines import ABSORBER
@@ -19,40 +18,25 @@ pytestmark = pytest.mark.slow
 FIRST = 1.5e-2  # farthest orbit: speed of the impact, or duration of the stick, that vanishes
 
 
-def reduced():
-    machine = Absorber(restitution=0.88432, friction=0.91958, gravity=0.576347, mass_ratio=0.05)
-    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.439}, amplitude=1.96332)
-    return polish(found.orbit), "amplitude", (1.95, 2.05)
-
-
-def tilted():
-    machine = Cavity(
-        restitution_left=0.42777,
-        restitution_right=0.51675,
-        friction_left=0.926035,
-        friction_right=0.820553,
-        gravity=0.577311,
-        slope=0.311532,
-        distance_left=0.642074,
-        distance_right=0.682441,
-        mass_ratio=0.05,
-    )
-    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.4623}, amplitude=1.58765)
-    return polish(found.orbit), "amplitude", (1.24, 1.6)
-
-
-def coupled():
-    machine = Coupled(
-        restitution=0.71165,
-        friction=0.75434,
-        gravity=0.839185,
-        mass_ratio=0.3,
-        damping=0.985537,
-        forcing=2.54884,
-        frequency=0.8785388,
-    )
-    found = find_attractor(machine, {"w": 0.5, "v": 1.0})
-    return polish(found.orbit), "frequency", (0.77, 0.9)
+STARTS = {
+    "reduced": (
+        Absorber(restitution=0.88432, friction=0.91958, gravity=0.576347, mass_ratio=0.05),
+        {"w_rate": 1.0, "phase": 2.439}, "amplitude", 1.96332, (1.95, 2.05),
+    ),
+    "tilted": (
+        Cavity(
+            restitution_left=0.42777, restitution_right=0.51675, friction_left=0.926035, friction_right=0.820553,
+            gravity=0.577311, slope=0.311532, distance_left=0.642074, distance_right=0.682441, mass_ratio=0.05,
+        ),
+        {"w_rate": 1.0, "phase": 2.4623}, "amplitude", 1.58765, (1.24, 1.6),
+    ),
+    "coupled": (
+        Coupled(
+            restitution=0.71165, friction=0.75434, gravity=0.839185, mass_ratio=0.3, damping=0.985537, forcing=2.54884
+        ),
+        {"w": 0.5, "v": 1.0}, "frequency", 0.8785388, (0.77, 0.9),
+    ),
+}  # fmt: skip
 
 
 def vanishing(orbit):
@@ -72,22 +56,16 @@ def simulated(orbit):
 
 def seen_beside(branch, end):
     """Coefficients of the characteristic polynomial of the simulated return map, extrapolated to an end of a branch."""
-    inward = 1 if end == 0 else -1
-    inner = next(
-        k for k in range(end + inward, len(branch) - 1 - end, inward) if vanishing(branch.orbit(k)) > 2e-3
-    )
-
+    places = range(len(branch))[:: -1 if end else 1]
+    inner = next(k for k in places if vanishing(branch.orbit(k)) > 2e-3)
     engine = Engine(branch.problem, branch.range, Settings())
-    ends = (
-        Solved(
-            branch.points[k],
-            branch.values[k],
-            engine.unit(branch.tangents[k]) * inward,
-            np.zeros(0), 0.0, 0.0, 0.0,
-        )
-        for k in (end, inner)
+    segment = Segment(
+        engine,
+        *(
+            Solved(branch.points[k], branch.values[k], engine.unit(branch.tangents[k]) * (-1 if end else 1), np.zeros(0), 0.0, 0.0, 0.0)
+            for k in (end, inner)
+        ),
     )  # fmt: skip
-    segment = Segment(engine, *ends)
 
     def beside(share):
         point = segment.at(share)
@@ -103,44 +81,41 @@ def seen_beside(branch, end):
     return np.polynomial.polynomial.polyfit(sizes, np.array(coefficients), 3)[0]
 
 
-@pytest.mark.parametrize("start", [reduced, tilted, coupled])
-def test_limits_at_borders(start):
+@pytest.mark.parametrize("name", STARTS)
+def test_limits_at_borders(name):
     """An impact of vanishing speed that a stick follows at once makes the equations singular, but not the motion."""
-    orbit, over, within = start()
+    machine, start, over, value, within = STARTS[name]
+    orbit = polish(machine.attractor(start, **{over: value}).orbit)
     graph = cv.diagram(orbit, over=over, within=within, depth=1)
     checked = 0
     for branch in graph:
-        for end in (0, len(branch) - 1):
-            label = next((label for place, label in branch.marks if place == end), None)
+        for end, label in branch.marks:
+            point = graph[label]
             if (
-                label is None
+                end not in (0, len(branch) - 1)
                 or np.ptp(branch.values) < 1e-4
-                or graph[label].kind not in ("stick", "wall-graze", "velocity-graze")
+                or point.kind not in ("stick", "wall-graze", "velocity-graze")
             ):
                 continue
             here = branch.orbit(end)
             soft = [m.segment for m in here.margins if m.kind == "approach" and abs(m.value) < 1e-9]
             if not any(here.word.events[(place + 1) % len(here.word)] == "s" for place in soft):
                 continue
-            expected = seen_beside(branch, end)
-            assert np.poly(branch.multipliers[end]) == pytest.approx(
-                expected, abs=5e-3 * np.abs(expected).max()
-            )
+            expected, found = seen_beside(branch, end), branch.multipliers[end]
+            assert np.poly(found) == pytest.approx(expected, abs=5e-3 * np.abs(expected).max())
             checked += 1
-            point = graph[label]
             listed = [point.multipliers, point.multipliers_beyond]
-            assert any(m is not None and np.array_equal(m, branch.multipliers[end]) for m in listed)
+            assert any(np.array_equal(m, found) for m in listed if m is not None)
     assert checked
 
 
 def test_at_a_graze_a_multiplier_is_infinite_and_the_other_one_is_none():
     """Towards a wall that is touched without speed that of half the motion grows as the speed's inverse; their product is bounded."""
-    machine = ABSORBER
-    graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 1.1), depth=0)
-    end = graph["WG1"].orbit
+    graph = cv.diagram(ABSORBER.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 1.1), depth=0)
+    end, value = graph["WG1"].orbit, graph["WG1"].value
     grown, gone = end.multipliers
-    assert grown.real == np.inf and grown.imag == 0.0 and gone == pytest.approx(0.0, abs=1e-12)
+    assert grown == complex(np.inf) and gone == pytest.approx(0.0, abs=1e-12)
     assert not end.stable
-    beside = [machine.orbit("LR", 1, end.nodes, amplitude=graph["WG1"].value - off) for off in (1e-5, 1e-7)]
+    beside = [ABSORBER.orbit("LR", 1, end.nodes, amplitude=value - off) for off in (1e-5, 1e-7)]
     sizes = [orbit.multipliers[0].real * orbit.margin**2 for orbit in beside]
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-2) and sizes[1] > 0.0

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from orbits import Absorber
-from orbits.words import Word, border_kind, limits_of, margin_name
+from orbits.words import Word
+from orbits.words.margins import border_kind, limits_of, margin_name
+from tests.machines import ABSORBER
 
 FLIGHT, EVENT, WALL, DURATION = range(4)
 # word, event, column -> what is watched, border
@@ -23,35 +24,28 @@ TABLE = [
     ("Rts+L", 1, DURATION, "duration", "stick"),
     ("ss", 1, DURATION, "duration", "stick"),
     ("", 0, FLIGHT, "stick", "stick"),
+    ("LLR", 2, FLIGHT, "wall", "wall-graze"),  # without friction flights have walls
+    ("LLR", 0, EVENT, "approach", "wall-graze"),
+    ("LLR", 0, DURATION, "duration", "vanishing-event"),
 ]
 
 
 @pytest.mark.parametrize(("text", "place", "column", "name", "kind"), TABLE)
 def test_names_of_margins_and_borders(text, place, column, name, kind):
-    word = Word.parse(text)
+    word = Word.parse(text, frictionless=text == "LLR")
     assert margin_name(word, 4 * place + column) == name
     assert border_kind(word, 4 * place + column) == kind
-
-
-def test_without_friction_flights_have_walls():
-    word = Word.parse("LLR", frictionless=True)
-    assert margin_name(word, 4 * 2 + FLIGHT) == "wall" and border_kind(word, 4 * 2 + FLIGHT) == "wall-graze"
-    assert (
-        border_kind(word, 4 * 0 + EVENT) == "wall-graze"
-        and border_kind(word, 4 * 0 + DURATION) == "vanishing-event"
-    )
 
 
 @pytest.mark.parametrize("frequency", [0.7, 1.7])
 def test_a_slip_s_margin_is_the_rate_at_which_friction_gives_way(frequency):
     """The cavity's acceleration is C Omega^2 sin Psi; it reaches (1 + eps) mu g at the slip, and grows there by C Omega^3 |cos Psi| per time."""
-    eps, limit = 0.006, 1.006 * 0.5 * 0.4
+    limit = 1.006 * 0.5 * 0.4
     amplitude = 1.2 * limit / frequency**2
-    machine = Absorber(restitution=0.7, friction=0.5, gravity=0.4, mass_ratio=eps, frequency=frequency)
-    orbit = machine.orbit("ss", amplitude=amplitude)
-    found = [margin.value for margin in orbit.margins if margin.kind == "slip"]
-    cosine = np.sqrt(1.0 - (limit / (amplitude * frequency**2)) ** 2)
-    assert found == pytest.approx([amplitude * frequency**3 * cosine] * len(found), rel=1e-10) and found
+    orbit = ABSORBER.changed(gravity=0.4, frequency=frequency).orbit("ss", amplitude=amplitude)
+    (found,) = (margin.value for margin in orbit.margins if margin.kind == "slip")
+    cosine = np.sqrt(1.0 - 1.0 / 1.2**2)
+    assert found == pytest.approx(amplitude * frequency**3 * cosine, rel=1e-10)
 
 
 def test_the_limit_of_a_multiplier_that_grows_without_bound_is_infinite():

@@ -5,13 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
 from orbits.cycles.cycle import Cycle
 from orbits.simulation import replay, simulate
+from orbits.simulation.replaying import by_events
 from orbits.words import Word
 from tests.machines import ABSORBER
+from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact
+from tools.fuzz.searching import LIMITS
 
 
 def attractor(c2):
@@ -94,3 +98,19 @@ def test_a_cycle_comes_back_to_where_it_met_the_section(machine, amplitude):
     (place,) = section.rounds(u)
     assert section.step(place) == pytest.approx(place, abs=1e-10)
     assert section.through(u) == pytest.approx(place, abs=1e-10)
+
+
+@pytest.mark.slow
+def test_orbits_on_which_rounding_grows_within_a_period_are_replayed_event_by_event():
+    """A fold beside a graze of the absorber: deviations grow 1e14 times on the way and shrink again. Many digits say that it is an orbit."""
+    drawn = draw("absorber", 404, 339)
+    folds = cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS).of_kind("fold")
+    fold = min(folds, key=lambda p: abs(p.value - 1.8398599))
+    known = exact(fold.orbit)
+    assert known.moved < 1e-12 and abs(known.shift) < 1e-14
+    assert fold.replay == fold.orbit.replay() < 1e-9
+    nodes = fold.orbit.nodes.copy()
+    nodes[5, 1] += 1e-4
+    assert replace(fold.orbit, nodes=nodes).replay() > 5e-5
+    through_walls = ABSORBER.orbit("tt", 1, amplitude=1.1)
+    assert by_events(through_walls, 0, 1) == np.inf == through_walls.replay()
