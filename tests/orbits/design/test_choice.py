@@ -1,6 +1,5 @@
-"""The best choice: against brute force, with kinks, over tolerances, and what cannot be chosen."""
+"""The best choice: against closed forms, with kinks, over tolerances, and what cannot be chosen."""
 
-import numpy as np
 import pytest
 
 from orbits.design import best
@@ -8,16 +7,14 @@ from orbits.machines.base import ParameterError
 
 
 def kinked(values):
-    """The larger of two lines that cross at 1.3, shifted by what is uncertain."""
-    x, shift = values["x"], values.get("shift", 0.0)
-    return {"peak": max(3.0 - x, 0.5 * x + 1.05) + shift, "cost": x}
+    """The larger of two lines that cross at 1.3."""
+    x = values["x"]
+    return {"peak": max(3.0 - x, 0.5 * x + 1.05), "cost": x}
 
 
-def test_one_parameter_against_a_thousand_values():
+def test_one_parameter_with_a_kink():
     choice = best(kinked, "peak", {"x": (0.0, 4.0)})
-    scan = np.linspace(0.0, 4.0, 1000)
-    known = scan[np.argmin([kinked({"x": x})["peak"] for x in scan])]
-    assert abs(choice.values["x"] - known) <= scan[1] + 4e-3
+    assert choice.values["x"] == pytest.approx(1.3, abs=8e-3)
     assert choice.others == {"cost": choice.values["x"]} and len(choice.tried) >= 9
 
 
@@ -28,9 +25,7 @@ def test_two_parameters_and_the_largest():
         return {"height": 5.0 - (values["x"] - 1.2) ** 2 - 2.0 * (values["y"] + 0.4) ** 2}
 
     choice = best(hill, "height", {"x": (0.0, 4.0), "y": (-2.0, 2.0)}, largest=True)
-    assert choice.values["x"] == pytest.approx(1.2, abs=0.02) and choice.values["y"] == pytest.approx(
-        -0.4, abs=0.02
-    )
+    assert choice.values == pytest.approx({"x": 1.2, "y": -0.4}, abs=0.02)
     assert choice.outcome == pytest.approx(5.0, abs=1e-3)
 
 
