@@ -6,6 +6,9 @@ import pytest
 import contvines as cv
 from orbits import Cavity
 from orbits.borders.neighbours import Grown, followed
+from orbits.borders.rewriting import edits_at
+from orbits.orbit import Orbit
+from orbits.words import Word
 from tests.machines import ABSORBER
 
 MACHINE = ABSORBER.changed(friction=0.2)
@@ -50,3 +53,12 @@ def test_what_does_not_come_near_a_border_says_nothing_about_it():
     pairs = ([graph[end].orbit(5) for end in (link.source, link.target)] for link in graph.switches)
     doubled = next(b for a, b in pairs if (len(a.word), len(b.word)) == (5, 11))
     assert doubled.real and doubled.replay() < 1e-7
+
+
+@pytest.mark.parametrize(("side", "walls"), [(1.0, ["R", "L"]), (-1.0, [])])
+def test_turns_near_the_walls_that_were_left_hit_none(side, walls):
+    """Sliding to the left ends at w = 1, to the right at w = -1."""
+    nodes = np.array([[0.3, -side], [3.4, side]])
+    border = Orbit(MACHINE, Word.parse("tt"), 1, nodes, MACHINE.vector({"amplitude": 0.8}))
+    edits = [edit for place in (0, 1) for edit in edits_at(border, 4 * place + 2)]
+    assert [event for edit in edits for event in edit.change.events] == walls
