@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.flows.native import batches
 from orbits.flows.protocol import Outcome
 from tests.machines import ABSORBER

@@ -6,7 +6,7 @@ import pytest
 from contvines.loci.regions import Region
 from orbits import Coupled, Machine
 from orbits.attractors import find_attractor
-from orbits.attractors.observation import Modulation, modulation
+from orbits.attractors.attractor import Modulation, modulation
 from orbits.attractors.sweeping import sweep
 from orbits.symbols import cos
 

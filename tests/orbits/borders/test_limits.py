@@ -8,7 +8,7 @@ from contvines.bifurcation.locate import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.simulation.replaying import monodromy
 from orbits.starts.find import polish
 from tests.machines import ABSORBER

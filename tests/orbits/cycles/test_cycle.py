@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from orbits import FACTORIES, Cavity, Orbit, OrbitProblem, Word
-from orbits.cycles.cycle import Cycle, canonical, is_symmetric
+from orbits.cycle import Cycle, canonical, is_symmetric
 from orbits.problem import rebuild
 from tests.machines import ABSORBER, COUPLED
 

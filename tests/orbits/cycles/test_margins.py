@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.words import Word
-from orbits.words.margins import border_kind, limits_of, margin_name
+from orbits.words import Word, border_kind, limits_of, margin_name
 from tests.machines import ABSORBER
 
 FLIGHT, EVENT, WALL, DURATION = range(4)

@@ -8,7 +8,7 @@ import pytest
 
 from orbits import Absorber, Coupled
 from orbits.design.record import recorded
-from orbits.flows.catalogue import simulator_of
+from orbits.flows import simulator_of
 from orbits.flows.native.batches import lyapunov
 from tests.machines import ABSORBER, COUPLED
 

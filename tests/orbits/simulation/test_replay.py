@@ -8,7 +8,7 @@ import pytest
 import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
-from orbits.cycles.cycle import Cycle
+from orbits.cycle import Cycle
 from orbits.simulation import replay, simulate
 from orbits.simulation.replaying import by_events
 from orbits.words import Word
