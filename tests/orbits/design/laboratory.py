@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tests.orbits.machines.coupled.equations_of_motion import event
+from tests.orbits.simulation.plain_integration import event
 
 FREQUENCY, RATIO, MASS, ABSORBER, HALF_WIDTH, GRAVITY = 22.0, 0.005, 12.0, 0.15, 4e-3, 9.81
 STUDY = """
@@ -55,8 +55,8 @@ def measurement(restitution, friction, first, base, end, most=10_000):
             return [y[1], one - base(t), y[3], other - base(t)]
 
         events = [
-            event(lambda t, y, S=mode: HALF_WIDTH - abs(y[0] - y[2]) if S else 1.0, -1),
-            event(lambda t, y, S=mode: S * (y[1] - y[3]) if S else force - abs(need(t, y)), -1),
+            event(lambda t, y, S=mode: HALF_WIDTH - abs(y[0] - y[2]) if S else 1.0),
+            event(lambda t, y, S=mode: S * (y[1] - y[3]) if S else force - abs(need(t, y))),
         ]
         run = solve_ivp(rates, (t, end), y, events=events, rtol=1e-9, atol=1e-13, max_step=2e-3)
         t, y = run.t[-1], run.y[:, -1].copy()

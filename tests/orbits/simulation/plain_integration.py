@@ -3,7 +3,13 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tests.orbits.machines.coupled.equations_of_motion import TIGHT, event
+from tests.orbits.machines.coupled.equations_of_motion import TIGHT
+
+
+def event(function):
+    """`function` as an event of solve_ivp that ends the run where it falls to zero."""
+    function.terminal, function.direction = True, -1
+    return function
 
 
 def events_of(amplitude, omega, pull, frictions, walls, restitutions, start, count):
@@ -18,7 +24,7 @@ def events_of(amplitude, omega, pull, frictions, walls, restitutions, start, cou
         return -amplitude * omega**2 * np.sin(first + omega * t) - pull
 
     def reserve(s):
-        return event(lambda t, y: frictions[s] - s * push(t), -1)
+        return event(lambda t, y: frictions[s] - s * push(t))
 
     def way_from_rest():
         return next((s for s in (1, -1) if reserve(s)(t, None) < -1e-12), 0)
@@ -29,8 +35,8 @@ def events_of(amplitude, omega, pull, frictions, walls, restitutions, start, cou
         def rates(t, y, s=mode):
             return y[1], push(t) - s * frictions[s] if s else 0.0
 
-        wall = event(lambda t, y, s=mode: s * (walls[s] - y[0]), -1)
-        stops = event(lambda t, y, s=mode: s * y[1], -1)
+        wall = event(lambda t, y, s=mode: s * (walls[s] - y[0]))
+        stops = event(lambda t, y, s=mode: s * y[1])
         watch = (wall, stops) if mode else (reserve(1), reserve(-1))
         run = solve_ivp(rates, (t, t + 60.0), (w, rate), events=watch, max_step=0.1, **TIGHT)
         t, (w, rate) = run.t[-1], run.y[:, -1]
