@@ -1,4 +1,4 @@
-"""From a special point to the first points of the branches that leave it."""
+"""Branch switching: from a special point to the first points of the branches that leave it."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ..problems.protocol import Problem
 from ..shared.numbers import EPSILON, ROUNDED
 from .settings import LEAVING
 
-KERNEL = 4  # null vectors that are followed at most
-MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
-# the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
+KERNEL = 4  # largest number of null vectors that are used
+MOST = 40  # largest number of branches that leave one point: half of 3^4 - 1, as where four mirrors meet
+# least ratio of the distances of first points at amplitudes a and a / 2; for points of the known branch, which bends away, it is the root of two
 LEAST = 1.6
-ATTEMPTS = 22  # halvings of the amplitude
-MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
-ASIDE = (4.0 * EPSILON, -16.0 * EPSILON, 64.0 * EPSILON, -128.0 * EPSILON)  # of the unknowns
+ATTEMPTS = 22  # largest number of halvings of the amplitude
+MISSED = 0.1  # largest distance of a first point from its hyperplane, in amplitudes
+ASIDE = (4.0 * EPSILON, -16.0 * EPSILON, 64.0 * EPSILON, -128.0 * EPSILON)  # relative shifts of unknowns
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Departure:
     Attributes
     ----------
     problem : Problem
-        Of the branch that leaves (the larger problem at a period doubling or symmetry breaking).
+        Problem of the branch that leaves (the larger problem at a period doubling or symmetry breaking).
     origin : Solved
         The branch point itself; its tangent points along the new branch.
     ahead, back : Solved or None
@@ -40,12 +40,13 @@ class Departure:
     direction : ndarray, shape (N + 1,)
         Null vector, of unit length in the metric.
     amplitude : float
+        Distance of the first points along the null vector, in the metric.
     curvature : float
         p = p0 + curvature * amplitude^2 (from the even part, extrapolated to zero amplitude).
     slope : float
         p = p0 + slope * amplitude (zero where ``back`` is an image of ``ahead``).
     family : bool
-        The solutions are a continuous family, moved into one another by a continuous symmetry: none of them is isolated.
+        The solutions form a continuous family, mapped to one another by a continuous symmetry; none of them is isolated.
     """
 
     problem: Problem
@@ -59,7 +60,7 @@ class Departure:
     family: bool = False
 
     def upright(self, unit: float, visible: float) -> bool:
-        """Whether the parameter, in this unit, does not change along the branch, over more than the `visible` length."""
+        """Whether the parameter does not change along the branch: by no more than rounding of `unit`, over more than the `visible` length."""
         moved = max(abs(self.ahead.p - self.origin.p), abs(self.slope) * self.amplitude)
         return moved <= ROUNDED * unit and self.amplitude > visible
 
@@ -72,13 +73,29 @@ def null_vectors(
     isolated: bool = False,
     most: int | None = None,
 ) -> list[np.ndarray]:
-    """Null vectors of [[F_u, F_p], [tangent]]: images of random vectors under its inverse, made orthonormal in the metric.
+    """Compute null vectors of [[F_u, F_p], [tangent]]: images of random vectors under its inverse, made orthonormal in the metric.
 
-    One application of the inverse is enough: the matrix is singular to roundoff. (Its eigenvectors are not asked for:
-    iterating with a matrix this far from normal need not converge to the null vector.)
+    One application of the inverse is enough, as the matrix is singular to rounding. (Further inverse iterations need not
+    converge to the null vector, as the matrix is far from normal.)
 
-    The tangent of the branch itself is excluded by the last row. Usually there is one; several (up to four, or to ``most``) where several
-    multipliers cross at once; none where (u, p) is not a branch point.
+    The last row excludes the tangent of the branch itself. Usually there is one null vector; there are several (up to four, or to ``most``) if several
+    multipliers cross at once, and none if (u, p) is not a branch point.
+
+    Parameters
+    ----------
+    engine : Engine
+    u : ndarray, shape (N,)
+    p : float
+    tangent : ndarray, shape (N + 1,)
+    isolated : bool
+        Test an ordinary point for isolated solutions, with the tolerance `Settings.isolated` instead of `Settings.null`.
+    most : int, optional
+        Largest number of null vectors.
+
+    Returns
+    -------
+    list of ndarray, shape (N + 1,)
+        Unit vectors in the metric.
     """
     border = engine.weights * tangent
     settings, found, first = engine.settings, list[np.ndarray](), 0.0
@@ -102,14 +119,14 @@ def null_vectors(
 
 @lru_cache(maxsize=64)
 def _sides(count: int, n: int) -> np.ndarray:
-    """Vectors without a pattern, shape (count, n)."""
+    """Return fixed random vectors, shape (count, n)."""
     return np.random.default_rng(3).standard_normal((count, n))
 
 
 def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side: np.ndarray) -> np.ndarray:
-    """What the inverse makes of a right-hand side at a branch point, or so little beside it that the matrix can be inverted.
+    """Solve with the bordered matrix at a branch point, or beside it within rounding.
 
-    By chance it may be singular to the last bit, and its inverse infinite.
+    The matrix may by chance be singular to the last bit; it is then evaluated at unknowns shifted by `ASIDE`.
     """
     image = side
     for near in _aside(engine, u):
@@ -121,15 +138,16 @@ def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side
 
 
 def _aside(engine: Engine, u: np.ndarray) -> Iterator[np.ndarray]:
+    """Generate the unknowns, then the same shifted by a few roundings."""
     yield u
     for part in ASIDE:
         yield u + part * np.maximum(np.abs(u), engine.scale[:-1])
 
 
 def _oriented(engine: Engine, vector: np.ndarray) -> np.ndarray:
-    """The vector or its opposite: the first of its large entries is negative.
+    """Return the vector or its negative, so that the first of its large entries is negative.
 
-    The inverse of a matrix that is singular to roundoff leaves the sign to chance, and with it which of two mirror images a
+    The inverse of a matrix that is singular to rounding gives a random sign, on which it depends which of two mirror images a
     diagram follows.
     """
     sizes = np.abs(vector[:-1]) / engine.scale[:-1]
@@ -148,28 +166,32 @@ def departures(
     most: int | None = None,
     exchanged: Callable[[Solved], bool] | None = None,
 ) -> list[Departure]:
-    """The branches that leave a branch point of the engine's problem.
+    """Compute the branches that leave a branch point of the engine's problem.
 
-    With one null vector: a point at distance ``amplitude`` along the null vector is corrected in the hyperplane through it; the first sweep of
-    Newton's method there solves the algebraic branching equation, so the part along the known branch need not be known.
+    With one null vector: a point at distance ``amplitude`` along the null vector is corrected in the hyperplane through it, orthogonal to the null
+    vector. The first Newton step solves the algebraic branching equation, so the component along the known branch need not be given.
 
     Parameters
     ----------
     engine : Engine
-        Of the problem in which the point is a branch point.
+        Engine of the problem in which the point is a branch point.
     u, p, tangent
         The point, and the tangent of the known branch.
     amplitude : float
-        In the metric; halved until the point can be corrected and lies close by.
+        First distance, in the metric; halved until the point can be corrected and lies close by.
     one_sided : bool
-        The other side is an image of this one.
+        The branch on the other side is an image of that on this side.
     directions : list of ndarray, optional
         Null vectors; computed if left out.
     most : int, optional
-        How many null vectors there are at most: as many as multipliers are critical. Where equations are badly conditioned more seem to be.
+        Largest number of null vectors: the number of critical multipliers. Badly conditioned equations seem to have more.
     exchanged : callable, optional
-        Whether a first point is as stable as the exchange of stability at a single null vector says; if not it lies on another branch, or
-        something lies between, and nearer ones are looked at.
+        Whether the stability of a first point agrees with the exchange of stability at a single null vector. If not, it lies on another branch or
+        behind another special point, and nearer points are tried.
+
+    Returns
+    -------
+    list of Departure
     """
     if directions is None:
         directions = null_vectors(engine, u, p, tangent, most=most)
@@ -181,7 +203,7 @@ def departures(
 
 
 def _starts(k: int) -> np.ndarray:
-    """Unit vectors of k numbers all round, one of each opposite pair: sums and differences of axes, then others between."""
+    """Return unit vectors of k numbers, spread over half of the sphere: sums and differences of the axes, then random ones; shape (n, k)."""
     if k == 2:
         angles = np.arange(16) * np.pi / 16
         return np.column_stack([np.cos(angles), np.sin(angles)])
@@ -196,7 +218,7 @@ Exchanged = Callable[[Solved], bool] | None
 
 
 class _BranchPoint:
-    """A branch point from which branches are looked for; see :func:`departures`."""
+    """A branch point whose leaving branches are computed; see :func:`departures`."""
 
     def __init__(
         self, engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray, amplitude: float, one_sided: bool
@@ -205,7 +227,11 @@ class _BranchPoint:
         self.amplitude, self.one_sided, self.z = amplitude, one_sided, engine.join(u, p)
 
     def multiple(self, directions: list[np.ndarray]) -> list[Departure]:
-        """Several null vectors: starts all round the sphere that they span, and at the parameter values found on the way."""
+        """Compute the branches for several null vectors.
+
+        Points all round the sphere that the null vectors span are corrected, first at the parameter of the branch point, then at parameter values
+        shifted like those of the points found.
+        """
         engine, amplitude, basis = self.engine, self.amplitude, np.array(directions)
         found: list[tuple[np.ndarray, float]] = []
 
@@ -232,7 +258,7 @@ class _BranchPoint:
                 continue
             ahead = departure.ahead
             if null_vectors(engine, ahead.u, ahead.p, ahead.tangent, isolated=True):
-                # off the branch point it is singular, too: one of a continuous family of equivalent solutions
+                # a point off the branch point is singular, too: it belongs to a continuous family of equivalent solutions
                 return [replace(departure, family=True)]
             result.append(departure)
         return result
@@ -240,7 +266,7 @@ class _BranchPoint:
     def leaving(
         self, direction: np.ndarray, bend: float = 0.0, exchanged: Exchanged = None
     ) -> Departure | None:
-        """The branch in a direction; `bend` is that of the parameter."""
+        """Compute the branch in a direction, or None; `bend` is the parameter's curvature, as `Departure.curvature`."""
         ways = ((LEAST, LEAVING.slanted), (LEAST, LEAVING.grazing), (0.0, LEAVING.slanted))
         for asked in (exchanged, None) if exchanged is not None else (None,):
             for way in ways:
@@ -253,7 +279,7 @@ class _BranchPoint:
         return None
 
     def at(self, direction: np.ndarray, amplitude: float, offset: float, reach: float) -> Solved | None:
-        """The solution at an amplitude in a direction, if it is not further off than that many times."""
+        """Solve for the point at an amplitude in a direction, with the parameter shifted by `offset`; None if it is farther than `reach` amplitudes."""
         engine, border = self.engine, self.engine.weights * direction
         guess = self.z + amplitude * direction
         guess[-1] += offset
@@ -262,13 +288,13 @@ class _BranchPoint:
         if found is None:
             return None
         there = engine.join(found.u, found.p)
-        # so close to the branch point Newton's method may end at roundoff, off the hyperplane
+        # this close to the branch point Newton's method may stop at rounding, off the hyperplane
         missed = abs(float(border @ (there - guess))) > MISSED * abs(amplitude)
         far = engine.norm(there - self.z) > reach * abs(amplitude)
         return None if far or missed else found
 
     def _lined_up(self, point: Solved | None, near: Solved | None, least: float) -> bool:
-        """Whether two points, the second one at half the amplitude, come from the same branch, as their distances tell."""
+        """Whether the distances of two points, the second one at half the amplitude, show that they lie on the same branch."""
         if point is None or near is None:
             return False
         away, beside = (self.engine.join(p.u, p.p) - self.z for p in (point, near))
@@ -277,7 +303,7 @@ class _BranchPoint:
 
     @cached_property
     def _origin(self) -> Solved | None:
-        """The branch point with its row, if need be of a point beside it; see `_evaluated`."""
+        """The branch point with its row, if necessary of a point beside it; see `_evaluated`."""
         border = self.engine.weights * self.tangent
         solved = (
             self.engine.polish(near, self.p, border, float(border @ self.z))
@@ -287,9 +313,10 @@ class _BranchPoint:
         return None if found is None else found._replace(u=np.array(self.u, dtype=float), sign=0.0)
 
     def _straight(self, found: Departure) -> np.ndarray | None:
-        """Where one of the two sides lies on the known branch, which turns round here (at a pitchfork), the direction of the other one; else None.
+        """If one of the two sides lies on the known branch, which turns round here (at a pitchfork), return the direction of the other one; else None.
 
-        What a smooth branch leaves of proportion at half the distance is a quarter, what one with a root does, at which it turns, more.
+        On a smooth branch the deviation from proportionality falls to a quarter at half the distance; on a branch that turns round, and behaves like
+        a square root, it falls by less.
         """
         if found.back is None:
             return None
@@ -312,7 +339,11 @@ class _BranchPoint:
     def _along(
         self, direction: np.ndarray, bend: float, exchanged: Exchanged, least: float, reach: float
     ) -> Departure | None:
-        """The branch in a direction whose first points are so much further away at twice the amplitude, and within reach."""
+        """Compute the branch in a direction, from first points within `reach` amplitudes.
+
+        A pair of points at amplitudes a and a / 2 is accepted if the ratio of their distances exceeds `least`. The amplitude is halved until
+        the curvatures from both agree.
+        """
         engine, p, one_sided, amplitude = self.engine, self.p, self.one_sided, self.amplitude
         best: Departure | None = None
 

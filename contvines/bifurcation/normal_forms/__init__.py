@@ -1,1 +1,1 @@
-"""Normal forms at single points, from derivatives of the equations there."""
+"""Normal forms at special points, from derivatives of the equations there."""

@@ -1,8 +1,10 @@
 """Coefficients of normal forms at a special point, from derivatives of the equations there.
 
-A cycle (or half of it, closed by the mirror) is a map z -> m z + ... on the critical directions; an equilibrium a flow
-z' = l z + .... With J(m) the Jacobian whose closure is multiplied by m, K the part of J that belongs to the closure (-1 for a
-flow), B and C the second and third derivatives of the equations, whose arguments are closed by their own multipliers,
+On the critical directions a cycle (or half of it, closed by the mirror) is a map z -> m z + ..., an equilibrium a flow z' = l z + ....
+
+The closure of a cycle's equations says that the last point maps to the first. J(m) is the Jacobian whose closure is multiplied by m, K the part
+of J that belongs to the closure (-1 for a flow), B and C are the second and third derivatives of the equations, and each argument of B and C is
+continued to the next period with its own multiplier. Then
 
     fold          z + a z^2      a = -w.B(v, v) / (2 w.K v)
     pitchfork     z + a z^3      a = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(1) h = -B(v, v)
@@ -11,7 +13,7 @@ flow), B and C the second and third derivatives of the equations, whose argument
                                  J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);      d = Re(c / m)
     Hopf          the same with J - i omega;                                        l1 = Re c / omega
 
-The critical vectors have unit length over the unknowns, of a cycle over its first point, as the textbook has them for the return map.
+The critical vectors have unit length over the unknowns, those of a cycle over its first point, like the textbook's vectors for the return map.
 Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7; Kuznetsov and Meijer, SIAM J. Sci. Comput. 26 (2005)
 1932, for maps; the form for cycles follows from the same expansion of the block-cyclic system.
 """
@@ -33,12 +35,12 @@ from .taylor import Line, along_line
 
 
 def _size(vector: np.ndarray) -> float:
-    """Largest entry."""
+    """Return the largest absolute entry."""
     return float(np.abs(vector).max())
 
 
 def in_phase(vector: np.ndarray) -> np.ndarray:
-    """A complex vector in the phase in which real and imaginary parts are orthogonal."""
+    """Return a complex vector, turned so that its real and imaginary parts are orthogonal."""
     square = np.sum(vector * vector)
     return vector * np.exp(-0.5j * np.angle(square)) if abs(square) > TINY else vector
 
@@ -52,7 +54,21 @@ class Coefficient(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """The critical vector of a pair with open ends, the left one, derivatives along real and imaginary part, h20, w.K q."""
+    """Vectors and derivatives of a pair.
+
+    Attributes
+    ----------
+    vector : ndarray of complex
+        Critical vector q, over two periods of a cycle.
+    left : ndarray of complex
+        Left null vector w.
+    a, b : Line
+        Derivatives along the real and the imaginary part of the vector.
+    h20 : ndarray of complex
+        Quadratic coefficient of the centre manifold.
+    weight : complex
+        w.K q.
+    """
 
     vector: np.ndarray
     left: np.ndarray
@@ -68,19 +84,20 @@ class Forms:
     Parameters
     ----------
     problem : Problem
-        Its ``kernels`` have ``matrix``; for maps ``offspring`` gives the cycle written twice.
+        Its ``kernels`` must have ``matrix``; for maps its ``offspring`` must give the same cycle over two periods.
     u, p
         The special point.
     rough : bool
-        A few digits only, for scanning.
+        Compute derivatives to a few digits only, to save time.
 
     Attributes
     ----------
     units : ndarray, shape (N,)
-        Typical sizes, in which the unknowns are counted inside: vectors that go in and out of `null`, `chain`, `line` and `rest` are in these
-        units, and so are J and K.
+        Units of the unknowns (their typical sizes): arguments and results of `null`, `chain`, `line` and `rest`, J and K are in these units.
     rate : float
-        Typical size of an eigenvalue; time is counted in its inverse.
+        Typical size of an eigenvalue; its inverse is the unit of time.
+    J, K : ndarray, shape (N, N)
+        Jacobian, and the part of it that belongs to the closure.
     """
 
     unknown = "the equations cannot be evaluated"
@@ -125,22 +142,22 @@ class Forms:
 
     @property
     def eigenvalues(self) -> NDArray[np.complex128]:
-        """Of an equilibrium, in the user's own unit of time."""
+        """Eigenvalues of an equilibrium, in the user's unit of time."""
         return np.asarray(self.rate * np.linalg.eigvals(self.J), dtype=complex)
 
     def _in_units(self, matrix: np.ndarray) -> np.ndarray:
-        """A Jacobian of one period, or of two, in units of the unknowns and of time."""
+        """Convert a Jacobian of one or two periods to the units of the unknowns and of time."""
         if self._plain:
             return matrix
         units = self._units_of(matrix.shape[0])
         return matrix * units / (self.rate * units[:, None])
 
     def _units_of(self, count: int) -> np.ndarray:
-        """Of the unknowns of one period, or of two."""
+        """Return the units of the unknowns of one period, or of two."""
         return self.units if count == self.n else self._twice
 
     def _jacobian(self, problem: Problem, work: object, u: np.ndarray) -> np.ndarray | None:
-        """The Jacobian of a problem, in its workspace."""
+        """Return the Jacobian of a problem at u, in units; None if the equations cannot be evaluated."""
         kernels, data = problem.kernels, problem.data
         here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
         if not math.isfinite(kernels.linearise(data, here, self.p, work)):
@@ -148,22 +165,22 @@ class Forms:
         assert kernels.matrix is not None
         return self._in_units(kernels.matrix(data, work))
 
-    # ------------------------------------------------------------------ open ends
+    # ------------------------------------------------------------------ perturbations with their own multiplier
     def closed_by(self, factor: complex) -> np.ndarray:
-        """J with its closure multiplied (maps), or J - factor (flows)."""
+        """Return J with its closure multiplied by a factor (maps), or J - factor (flows)."""
         if self.flow:
             return self.J - factor * np.eye(self.n)
         return self.J + (factor - 1.0) * self.K
 
     def extended(self, x: np.ndarray, factor: complex) -> np.ndarray:
-        """A perturbation of one period followed by itself times its multiplier, in the unknowns of the doubled cycle."""
+        """Return a perturbation of one period, followed by itself times its multiplier, in the unknowns of two periods; for flows unchanged."""
         if self.flow:
             return x
         parts = [self._continued(part) for part in (np.real(x), np.imag(x))]
         return np.concatenate([x, factor * (parts[0] + 1j * parts[1] if np.iscomplexobj(x) else parts[0])])
 
     def _continued(self, x: np.ndarray) -> np.ndarray:
-        """What the doubled cycle has in its second half if the perturbation goes on with multiplier one."""
+        """Return the second half of a perturbation of two periods that continues with multiplier one."""
         if not x.any():
             return np.zeros(self.n)
         here, tangent = self.u * self.units, np.append(x * self.units, 0.0)
@@ -171,11 +188,17 @@ class Forms:
         return np.asarray(embedding.tangent, dtype=float)[self.n : 2 * self.n] / self.units
 
     def line(self, x: np.ndarray, factor: complex) -> Line:
-        """Derivatives of the rows of one period along a real perturbation whose closure is multiplied."""
+        """Return the derivatives of one period's rows along a real perturbation with a multiplier.
+
+        Raises
+        ------
+        ValueError
+            If the equations cannot be evaluated near the point.
+        """
         return self.line_of(self.extended(x, factor))
 
     def line_of(self, direction: np.ndarray) -> Line:
-        """The same for a direction of the doubled cycle."""
+        """Return the same for a direction in the unknowns of two periods; results are stored."""
         direction = np.ascontiguousarray(np.real(direction))
         key = direction.tobytes()
         if key not in self.lines:
@@ -186,7 +209,7 @@ class Forms:
         return self.lines[key]
 
     def rows(self, points: np.ndarray) -> np.ndarray | None:
-        """The derivatives of one period's rows at points of the doubled cycle; None where one of them is not known."""
+        """Return the Jacobians of one period's rows at points in the unknowns of two periods; None if one cannot be evaluated."""
         found = []
         for u in points:
             here = self._jacobian(self.open, self.open_work, u)
@@ -197,37 +220,37 @@ class Forms:
 
     # ------------------------------------------------------------------ one real critical direction
     def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
-        """Right null vector of J closed by a multiplier, of length one as normal forms measure it, and the left one."""
+        """Return the right null vector of J closed by a multiplier, of unit length by `unit`, and the left one."""
         if factor not in self._nulls:
             left, _, right = np.linalg.svd(self.closed_by(factor))
             self._nulls[factor] = self.unit(right[-1].conj()), left[:, -1].conj()
         return self._nulls[factor]
 
     def unit(self, vector: np.ndarray) -> np.ndarray:
-        """A direction with length one over the user's unknowns, of a cycle over its first point."""
+        """Scale a direction to unit length over the user's unknowns, for a cycle over its first point."""
         return vector / (self.problem.amplitude(vector * self.units) or np.nan)
 
     def chain(self, factor: float) -> np.ndarray:
-        """The null vector and the next one of a double multiplier's Jordan chain, shape (N, 2)."""
+        """Return the null vector and the generalised eigenvector of a double multiplier, shape (N, 2)."""
         first = np.real(self.null(factor)[0])
-        if first[np.argmax(np.abs(first))] < 0.0:  # quadratic coefficients change their signs with it
+        if first[np.argmax(np.abs(first))] < 0.0:  # fixes the signs of quadratic coefficients
             first = -first
         second = self._solve(self.closed_by(factor), -(self.K @ first))
         return np.column_stack([first, second - (first @ second) / (first @ first) * first])
 
     def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
-        """``rest`` at many displacements, shape (k, N)."""
+        """Return ``rest`` at k displacements, shape (k, N)."""
         after = [None] * len(here) if following is None else following
         return np.array([self.rest(x, y) for x, y in zip(here, after, strict=True)])
 
     def rest(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
-        """The equations of one period at a displacement whose next period begins with another one; F for a flow.
+        """Return the residual of one period at displacement `here`, if the next period starts at displacement `following`; F for a flow.
 
-        NaN where they cannot be evaluated.
+        NaN if the equations cannot be evaluated.
         """
         moved = self.whole + (here if following is None else np.append(here, self._carrier @ following))
         moved, rows = moved * self._units_of(len(moved)), self.rate * self.units
-        if isinstance(self.open, Evaluable):  # no derivatives are asked for
+        if isinstance(self.open, Evaluable):  # residuals without derivatives
             with np.errstate(all="ignore"):
                 try:
                     return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n] / rows
@@ -239,34 +262,35 @@ class Forms:
 
     @cached_property
     def _carrier(self) -> np.ndarray:
+        """Matrix of `_continued`, shape (N, N)."""
         return np.column_stack([self._continued(unit) for unit in np.eye(self.n)])
 
     def quadratic(self, along: np.ndarray | None = None) -> Coefficient:
-        """a at a fold: z + a z^2, or z' = a z^2; its sign is that along a direction, if one is given."""
+        """Return a at a fold: z + a z^2, or z' = a z^2. Its sign refers to the direction `along`, if one is given."""
         v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
         if along is not None and v @ (along / self.units) < 0.0:
             v = -v
         line, weight, x = self.line(v, 1.0), float(w @ self.K @ v) or np.nan, self.extended(v, 1.0)
         value = -0.5 * float(w @ line.second @ x) / weight
-        # as if the second derivative pointed along the left null vector: at a cusp it may vanish, then the third one counts
+        # size of the coefficient if B(v, v) pointed along the left null vector; at a cusp B may vanish: the third derivative is added
         size = float(np.linalg.norm(line.second @ x) + NORMAL_FORMS.step * np.linalg.norm(line.third @ x))
         return self._timed(
             value, abs(0.5 * self.n * line.second_error * _size(v) / weight), 0.5 * size / abs(weight)
         )
 
     def _timed(self, value: float, error: float, size: float) -> Coefficient:
-        """A coefficient of a rate of change, in the user's own unit of time."""
+        """Convert a coefficient of a rate of change to the user's unit of time."""
         return Coefficient(self.rate * value, self.rate * error, self.rate * size)
 
     def cubic(self, factor: float) -> Coefficient:
-        """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
+        """Return the cubic coefficient at a flip (factor -1) or pitchfork (factor 1; for flows 0)."""
         v, w = self.null(factor)
         v, w = np.real(v), np.real(w)
         closure = factor if not self.flow else 1.0
         line, weight = self.line(v, closure), float(w @ self.K @ v) or np.nan
         x = self.extended(v, closure)
         regular = self.closed_by(0.0 if self.flow else 1.0)
-        if factor == (0.0 if self.flow else 1.0):  # singular itself
+        if factor == (0.0 if self.flow else 1.0):  # this matrix is singular: bordered
             bordered = np.block([[regular, w[:, None]], [v[None, :], np.zeros((1, 1))]])
             h = np.linalg.solve(bordered, np.append(-(line.second @ x), 0.0))[:-1]
         else:
@@ -280,17 +304,17 @@ class Forms:
 
     @staticmethod
     def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
-        """A solution, of least length where the matrix is singular."""
+        """Solve a linear system; if the matrix is singular, for the solution of least length."""
         return np.linalg.lstsq(matrix, side, rcond=NORMAL_FORMS.cutoff)[0]
 
     # ------------------------------------------------------------------ a pair
     def lyapunov(self, multiplier: complex) -> tuple[Coefficient, complex]:
-        """(first Lyapunov coefficient, c) of a pair: d = Re(c / m) for maps, l1 = Re(c) / omega for flows.
+        """Return (first Lyapunov coefficient, c) of a pair: d = Re(c / m) for maps, l1 = Re(c) / omega for flows.
 
         Parameters
         ----------
         multiplier : complex
-            m on the unit circle (i omega for flows); the raw one of the problem's own period.
+            m near the unit circle (i omega for flows): the raw multiplier of the problem's own period.
         """
         multiplier = 1j * multiplier.imag / self.rate if self.flow else multiplier / abs(multiplier)
         pair = self._pair(multiplier)
@@ -315,6 +339,7 @@ class Forms:
         return Coefficient(float((c / multiplier).real), error, size), c
 
     def _pair(self, multiplier: complex) -> Pair:
+        """Compute vectors and derivatives of a pair with a multiplier exactly on the circle (the axis)."""
         q, w = self.null(multiplier)
         q = in_phase(q)
         one = self.extended(q, multiplier)
@@ -325,7 +350,7 @@ class Forms:
 
 
 def forms_at(problem: Problem, u: np.ndarray, p: float) -> Forms:
-    """Normal forms of a problem at a point: of cycles of flows those of the return map.
+    """Return the normal forms of a problem at a point; for cycles of flows those of the return map.
 
     Raises
     ------
@@ -338,7 +363,7 @@ def forms_at(problem: Problem, u: np.ndarray, p: float) -> Forms:
 
 
 class ReturnForms(Forms):
-    """Normal forms of x -> P(x) at x = 0, P being the return map of a cycle. Equations are P(x) - x' = 0, x' the next return.
+    """Normal forms of the return map P of a cycle of a flow, at its fixed point x = 0. The equations are P(x) - x' = 0, with x' the next return.
 
     Critical vectors have unit length as states.
     """
@@ -360,11 +385,11 @@ class ReturnForms(Forms):
         self._nulls: dict[complex, tuple[np.ndarray, np.ndarray]] = {}
 
     def along(self, direction: np.ndarray) -> np.ndarray:
-        """A direction of the cycle's unknowns as one of the section."""
+        """Return a direction of the cycle's unknowns in the coordinates of the section."""
         return self.returns.inverse @ direction[: self.returns.node]
 
     def spectrum(self) -> NDArray[np.complex128]:
-        """Multipliers."""
+        """Return the multipliers."""
         return np.asarray(np.linalg.eigvals(self.J + np.eye(self.n)), dtype=complex)
 
     def extended(self, x: np.ndarray, factor: complex) -> np.ndarray:

@@ -1,10 +1,10 @@
-"""Normal forms at points of codimension two, as data: critical directions, the monomials that stay, what is read off them.
+"""Normal forms at points of codimension two, as data: critical directions, monomials of the normal form, and coefficients computed from them.
 
 With w, w1, w2 real and z complex coordinates on the critical directions, of unit length as in
 :mod:`contvines.bifurcation.normal_forms.coefficients`; maps w -> ..., flows w' = ...:
 
     cusp                 w + c w^3,  w' = c w^3
-    generalized flip     -w + c w^3 + d w^5, at c = 0: d > 0, the doubled cycles that are born are stable
+    generalized flip     -w + c w^3 + d w^5, at c = 0: for d > 0 the doubled cycles that are born are stable
     Chenciner            m z (1 + c1 |z|^2 + c2 |z|^4):  d2 = Re c2 + (Im c1)^2 / 2
     generalized Hopf     i omega z + c1 z |z|^2 + c2 z |z|^4:  l2 = Re c2 / omega
     resonance 1:1        (w1 + w2, w2 + a w1^2 + b w1 w2);  Bogdanov-Takens (w2, a w1^2 + b w1 w2)
@@ -14,8 +14,8 @@ With w, w1, w2 real and z complex coordinates on the critical directions, of uni
     fold-flip            (w1 + a w1^2 / 2 + b w2^2 / 2 + c w1^3 / 6 + d w1 w2^2 / 2, -w2 + e w1 w2 + f w1^2 w2 / 2 + g w2^3 / 6)
     fold and pair        w' = b w^2 + c |z|^2 + g1 w^3 + g2 w |z|^2,  z' = i omega z + D w z + h1 w^2 z + h2 z |z|^2 (zero-Hopf; of
                          maps in the same way, with h and D divided by m):  s = sign(b c), theta = Re D / b, and of flows
-                         e = Re[h1 + D (Re h2 / c + g2 / (2 c) - 3 g1 / (2 b)) - h2 b / c], what is left of the cubic terms after changes
-                         of time and coordinates
+                         e = Re[h1 + D (Re h2 / c + g2 / (2 c) - 3 g1 / (2 b)) - h2 b / c], the cubic coefficient that remains after
+                         changes of time and coordinates
     two pairs, flip and pair   r1' = r1 (p11 r1^2 + p12 r2^2), r2' = r2 (p21 r1^2 + p22 r2^2) to third order (growth of the amplitudes
                          per period for maps):  theta = p12 / p22, delta = p21 / p11
 
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-OTHER = 0.1  # distance of a multiplier from a strong resonance that is another one, as of a half map
-#: of flows, how the coefficients grow with the unit of rates; those that are not named do not
+OTHER = 0.1  # distance between a multiplier and a strong resonance from which it is not this resonance (of a half map, for example)
+#: for flows: power of the rate with which each coefficient scales; zero for those not listed
 RATES: dict[str, dict[str, int]] = {
     "cusp": {"c": 1},
     "bogdanov-takens": {"a": 2, "b": 1},
@@ -49,13 +49,14 @@ THIRD, QUARTER = np.exp(2j * np.pi / 3.0), 1j
 
 
 def normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, float]:
-    """Coefficients at a point of codimension two, by name.
+    """Compute the normal-form coefficients at a point of codimension two, by name; empty for kinds without a normal form.
 
     Parameters
     ----------
     kind : str
-        Of the point.
+        Kind of the point.
     forms : Forms
+        Equations at the point.
     pairs : list of complex
         Critical multipliers (of a flow: eigenvalues) with positive imaginary part, the most critical one first.
 
@@ -70,7 +71,7 @@ def normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, floa
 
 
 def _normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, float]:
-    """The same in the unit of time that `forms` counts in."""
+    """Compute the coefficients in the unit of time of `forms`; `pairs` are in this unit, too."""
     if kind == "cusp":
         return {"c": forms.cubic(0.0 if forms.flow else 1.0).value / forms.rate}
     if kind in ("generalized-period-doubling", "degenerate-symmetry-breaking"):
@@ -93,10 +94,12 @@ def _normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, flo
 
 
 def _on_boundary(forms: Forms, value: complex) -> complex:
+    """Move a critical value exactly onto the circle, or of a flow the imaginary axis."""
     return 1j * abs(value.imag) if forms.flow else value / abs(value)
 
 
 def _both(forms: Forms, value: complex) -> list[complex]:
+    """Return the pair of a critical value, exactly on the circle or the axis."""
     value = _on_boundary(forms, value)
     return [value, value.conjugate()]
 
@@ -108,7 +111,19 @@ def _simple(
     degree: int,
     wanted: Callable[[Series], dict[str, float]],
 ) -> dict[str, float]:
-    """The reduction for simple multipliers, conjugate ones in a row; what stays for one of a pair stays for the other."""
+    """Reduce to the directions of simple multipliers.
+
+    Parameters
+    ----------
+    forms : Forms
+    values : sequence of complex
+        Critical multipliers; conjugate ones are neighbours.
+    stay : list of (int, Monomial)
+        Terms of the normal form; terms of one of a pair are added for the other one.
+    degree : int
+    wanted : callable
+        Coefficients of the normal form -> result by name.
+    """
     m = len(values)
     vectors, real, partner = [], np.zeros((m, m), dtype=complex), list(range(m))
     i = 0
@@ -134,11 +149,13 @@ def _simple(
 
 
 def _flip(forms: Forms) -> dict[str, float]:
+    """Generalized flip."""
     stay = [(0, (3,)), (0, (5,))]
     return _simple(forms, [-1.0], stay, 5, lambda N: {"c": N[(3,)][0].real, "d": N[(5,)][0].real})
 
 
 def _double(forms: Forms, factor: float, degree: int, names: tuple[str, str]) -> dict[str, float]:
+    """Double multiplier with a Jordan block: Bogdanov-Takens, resonances 1:1 and 1:2."""
     first, second = (degree, 0), (degree - 1, 1)
     return reduced(
         forms,
@@ -152,7 +169,7 @@ def _double(forms: Forms, factor: float, degree: int, names: tuple[str, str]) ->
 
 
 def _resonance(forms: Forms, pairs: list[complex]) -> dict[str, float]:
-    """By the multipliers of the problem's own period, which for half maps are not those of the name."""
+    """Compute the form of the resonance that the multipliers of the problem's own period have; for half maps it may differ from the kind's name."""
     if forms.flow:
         return _double(forms, 0.0, 2, ("a", "b"))
     value = pairs[0] if pairs else None
@@ -164,11 +181,13 @@ def _resonance(forms: Forms, pairs: list[complex]) -> dict[str, float]:
     }
     factor = min(smallest, key=lambda key: smallest[key])
     if value is not None and abs(value - factor) > OTHER:
-        return {}  # of a half map, for which the resonance is a weak one
+        return {}  # a half map, for which the resonance is weak
     return _double(forms, factor, 2, ("a", "b")) if factor > 0.0 else _double(forms, factor, 3, ("c", "d"))
 
 
 def _third(forms: Forms) -> dict[str, float]:
+    """Resonance 1:3."""
+
     def wanted(N: Series) -> dict[str, float]:
         b, c = N[(0, 2)][0], N[(2, 1)][0]
         return {"b": abs(b), "a": ((c / THIRD).real / abs(b) ** 2 - 1.0) / 3.0}
@@ -177,6 +196,8 @@ def _third(forms: Forms) -> dict[str, float]:
 
 
 def _fourth(forms: Forms) -> dict[str, float]:
+    """Resonance 1:4."""
+
     def wanted(N: Series) -> dict[str, float]:
         A = -1j * N[(2, 1)][0] / abs(N[(0, 3)][0])
         return {"A_re": A.real, "A_im": A.imag}
@@ -185,6 +206,7 @@ def _fourth(forms: Forms) -> dict[str, float]:
 
 
 def _degenerate_pair(forms: Forms, value: complex) -> dict[str, float]:
+    """Chenciner point, or generalized Hopf point."""
     own = _on_boundary(forms, value)
 
     def wanted(N: Series) -> dict[str, float]:
@@ -198,6 +220,7 @@ def _degenerate_pair(forms: Forms, value: complex) -> dict[str, float]:
 
 
 def _fold_flip(forms: Forms) -> dict[str, float]:
+    """Fold-flip."""
     stay = [(0, (2, 0)), (0, (0, 2)), (1, (1, 1)), (0, (3, 0)), (0, (1, 2)), (1, (2, 1)), (1, (0, 3))]
     factors = (2.0, 2.0, 1.0, 6.0, 2.0, 2.0, 6.0)
 
@@ -211,6 +234,7 @@ def _fold_flip(forms: Forms) -> dict[str, float]:
 
 
 def _fold_and_pair(forms: Forms, value: complex) -> dict[str, float]:
+    """Fold and pair."""
     stay = [(0, (2, 0, 0)), (0, (0, 1, 1)), (0, (3, 0, 0)), (0, (1, 1, 1))]
     stay += [(1, (1, 1, 0)), (1, (2, 1, 0)), (1, (0, 2, 1))]
     turn = 1.0 if forms.flow else _on_boundary(forms, value)
@@ -228,8 +252,8 @@ def _fold_and_pair(forms: Forms, value: complex) -> dict[str, float]:
 
 
 def _amplitudes(forms: Forms, values: list[complex]) -> dict[str, float]:
-    """Growth of two amplitudes: a flip and a pair, or two pairs."""
-    first = 1 if len(values) == 3 else 2  # coordinates of the first amplitude
+    """Flip and pair, or two pairs: growth of the two amplitudes."""
+    first = 1 if len(values) == 3 else 2  # number of coordinates of the first amplitude
     own = (2, 1) if first == 2 else (3,)
     other = (1, 1) if first == 2 else (2,)
     linear = (1, 0) if first == 2 else (1,)

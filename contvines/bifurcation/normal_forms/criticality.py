@@ -1,4 +1,4 @@
-"""Normal forms: on which side a bifurcating branch lives, and how steeply; strong resonances next to Neimark-Sacker points.
+"""Criticality: on which side of a special point the bifurcating branch exists, and the normal-form coefficient; strong resonances near Neimark-Sacker points.
 
 At a period doubling or symmetry breaking with critical multiplier m(p) the bifurcating branch is p = p0 + p2 s^2 with s the
 amplitude along the critical vector: the Lyapunov-Schmidt reduction, carried out numerically by solving at fixed small
@@ -10,7 +10,7 @@ the unknowns of an algebraic problem, over the first point of a cycle, of maps a
     pitchfork   xi -> m xi + a xi^3,  m near +1:   a = -p2 dm/dp      supercritical for a < 0
     flow        xi' = m xi + a xi^3,  m near 0:    a = -p2 dm/dp      supercritical for a < 0
 
-In words: supercritical when the bifurcating branch lives where the known one has lost the stability that it had.
+In words: supercritical if the bifurcating branch exists on the side where the known branch has lost its stability.
 A fold has p = p0 + a s^2 with s the amplitude along q; its coefficient is a. Neimark-Sacker and Hopf points have the first Lyapunov coefficient.
 """
 
@@ -28,36 +28,37 @@ from ..settings import NORMAL_FORMS
 from .coefficients import Forms
 
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
-WIDE = 16.0  # times a step: the chord on which points beside a special point are placed; they may lie far off it, and are none of its ends
-PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / WIDE
-NEARER = 0.25  # times a step: the next one, where a number has not converged
+# points beside a special point are placed on a chord along the tangent, much longer than the step, so that none of them is an end of the chord
+WIDE = 16.0  # length of this chord, in steps
+PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / WIDE  # positions of the points on it
+NEARER = 0.25  # ratio of successive steps, if the result has not converged
 
 
 def strong_resonance(multiplier: complex) -> str:
-    """The strong resonance at which a multiplier of the full period is, "1:3" for example; "" for none."""
+    """Return the strong resonance near which a multiplier of the full period is, for example "1:3"; "" for none."""
     angle = abs(float(np.angle(multiplier)))
     return next((n for n, place in STRONG.items() if abs(angle - place) < NORMAL_FORMS.resonant), "")
 
 
 def near_resonance(multiplier: complex) -> tuple[str, ...]:
-    """Remarks on a multiplier of the full period next to a strong resonance."""
+    """Return remarks on a multiplier of the full period: none, or one that names a nearby strong resonance."""
     resonance = strong_resonance(multiplier)
     return (f"near the strong resonance {resonance}",) if resonance else ()
 
 
 def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -> Classified:
-    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point, d of a cycle, l1 of an equilibrium; None where it cannot be obtained.
+    """Compute the first Lyapunov coefficient at a Neimark-Sacker or Hopf point: d of a cycle, l1 of an equilibrium.
 
-    Supercritical: a stable circle (cycle) is born where the motion has lost its stability. Remarks name a nearby strong resonance, or say that
-    the error is as large as the coefficient.
+    Supercritical (negative): a stable circle (cycle) is born on the side where the motion has lost its stability. Remarks name a nearby strong
+    resonance, or say that the error is as large as the coefficient, or why there is no coefficient.
 
     Parameters
     ----------
     problem : Problem
     u, p
-        The point.
+        The special point.
     spectrum : ndarray of complex
-        Raw multipliers there (of a flow with few unknowns they are computed here).
+        Raw multipliers there (for a flow with few unknowns they are computed again here).
     """
     flow = problem.spectrum == "flow"
     if problem.kernels.matrix is None:
@@ -87,12 +88,12 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
 
 
 def _critical(values: np.ndarray, flow: bool) -> complex:
-    """Of the upper half plane the value that is nearest to the boundary of stability.
+    """Return the value with positive imaginary part that is nearest to the boundary of stability.
 
     Raises
     ------
     ValueError
-        If none is there.
+        If no value has a positive imaginary part.
     """
     upper = values[np.imag(values) > 0.0]
     if not len(upper):
@@ -101,15 +102,15 @@ def _critical(values: np.ndarray, flow: bool) -> complex:
 
 
 def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float | None:
-    """The cubic coefficient at a flip or pitchfork of a problem with a spectrum and the whole Jacobian; else None.
+    """Compute the cubic coefficient at a flip or pitchfork; None without a spectrum or a Jacobian matrix, or if the error is too large.
 
     Parameters
     ----------
     problem : Problem
     u, p
-        The point.
+        The special point.
     flip : bool
-        Critical multiplier -1.
+        Whether the critical multiplier is -1.
     """
     if problem.spectrum == "none" or problem.kernels.matrix is None:
         return None
@@ -126,7 +127,7 @@ def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float |
 
 
 def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
-    """Points of the branch ahead and back, at a step and at half of that; None if one of them is not found."""
+    """Return the points of the branch at +step, -step, +step/2 and -step/2; None if one of them cannot be solved."""
     length = WIDE * step
     z, along = engine.join(point.u, point.p), length * point.tangent
     border = engine.weights * point.tangent
@@ -139,10 +140,18 @@ def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
 def _converged(
     engine: Engine, point: Solved, estimate: Callable[[Solved, Solved, float], float]
 ) -> float | None:
-    """A number from a point of the branch ahead and one back, both at a step, continued to no step at all; None if it is not available.
+    """Extrapolate a central-difference estimate to zero step; None if it cannot be computed.
 
-    The step is made shorter until half of it says the same: another special point, of which the number knows nothing, may be as near as that.
-    Where none does, the number is that of the step at which both differ least.
+    The step is shortened until estimates from the step and from half of it agree, as another special point may be as near as the step. If they never
+    do, the result is that of the step at which they differ least.
+
+    Parameters
+    ----------
+    engine : Engine
+    point : Solved
+        The special point, with the tangent of the branch.
+    estimate : callable
+        (point at +step, point at -step, step) -> estimate with an error of second order in the step.
     """
     best, least, step = None, np.inf, NORMAL_FORMS.step
     while step > engine.settings.resolution:
@@ -160,7 +169,7 @@ def _converged(
 
 
 def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | None:
-    """d(log abs(m))/dp of the critical multiplier (dm/dp for flows) along the known branch; None if not available.
+    """Compute d(log abs(m))/dp of the critical multiplier m (dm/dp for flows) along the known branch; None if not available.
 
     Parameters
     ----------
@@ -168,7 +177,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     point : Solved
         The special point, with the tangent of the known branch.
     name, k
-        Which multiplier; see :func:`contvines.continuation.layout.aim_at_multiplier`.
+        Sort and rank of the multiplier; see :func:`contvines.continuation.layout.aim_at_multiplier`.
     """
     kind = engine.problem.spectrum
     if kind == "none" or abs(point.tangent[-1]) < engine.settings.upright:
@@ -184,16 +193,16 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
 
 
 def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str | None, float | None]:
-    """("supercritical" or "subcritical", normal-form coefficient).
+    """Return ("supercritical" or "subcritical", normal-form coefficient), or (None, None) if undecided.
 
     Parameters
     ----------
     curvature : float
-        p2 of the bifurcating branch.
+        p2 of the bifurcating branch, p = p0 + p2 s^2.
     speed : float or None
         d(log abs(m))/dp on the known branch.
     flip : bool
-        Critical multiplier -1.
+        Whether the critical multiplier is -1.
     """
     if speed is None or not np.isfinite(speed) or speed == 0.0 or curvature == 0.0:
         return None, None
@@ -202,7 +211,7 @@ def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str 
 
 
 def fold_coefficient(engine: Engine, point: Solved) -> float | None:
-    """a in p = p0 + a s^2 along the branch through a fold, s the amplitude along the critical vector."""
+    """Compute a in p = p0 + a s^2 along the branch through a fold, s the amplitude along the critical vector; None if not available."""
 
     def bend(ahead: Solved, back: Solved, step: float) -> float:
         return (ahead.p + back.p - 2.0 * point.p) / (2.0 * step**2)

@@ -1,13 +1,13 @@
 """Reduction to the critical directions: Taylor coefficients of a centre manifold and of the normal form on it, to any order.
 
-Coordinates w (m of them, complex in conjugate pairs) on the critical directions; H(w) = V w + ... is the manifold, N(w) = L w + ...
-the normal form. With R(u, v) the equations of one period, whose next period begins with v, or F for a flow,
+There are m coordinates w on the critical directions, complex ones in conjugate pairs; H(w) = V w + ... is the manifold, N(w) = L w + ...
+the normal form. With the equations R(u, v) of one period, where v is the start of the next period, or F(u) of a flow, the homological equations
 
     maps    R(H(w), H(N(w))) = 0,        flows    F(H(w)) = DH(w) N(w),
 
-are solved degree by degree: what the lower degrees leave over is sampled along lines through the origin, where its Taylor
-coefficients are those of a fit, and balanced by new terms of H and, for the monomials that are allowed to stay, of N. Where a term may
-stand in either, it is in N, and H has no part along the critical vector (w.K h = 0). Source of the method: Kuznetsov, SIAM
+are solved degree by degree. The residual of the lower degrees is sampled along lines through the origin, a polynomial fit gives its Taylor
+coefficients, and new terms of H, and of N for the monomials that the normal form has, balance them. A term that could be in both is put into
+N, and H then has no part along the critical vector (w.K h = 0). Source of the method: Kuznetsov, SIAM
 J. Numer. Anal. 36 (1999) 1104, with the multilinear forms replaced by sampling.
 """
 
@@ -30,16 +30,17 @@ if TYPE_CHECKING:
     from .coefficients import Forms
 
 NODES = 26  # samples along a line
-SPREAD = 1.3  # directions per monomial
-CANDIDATES = 8  # random directions from which each is chosen
-WIDEST, NARROWER = 0.6, 0.7  # radii of the samples, the first one relative to the reach of the equations
+SPREAD = 1.3  # number of lines per monomial
+CANDIDATES = 8  # number of random lines from which each line is chosen
+WIDEST = 0.6  # first radius of the samples, relative to the size of the unknowns
+NARROWER = 0.7  # ratio of successive radii
 
 Monomial = tuple[int, ...]
 Series = dict[Monomial, np.ndarray]
 
 
 def monomials(m: int, degree: int) -> list[Monomial]:
-    """Exponents of the monomials of a degree in m coordinates."""
+    """Return the exponents of all monomials of a degree in m coordinates."""
     return [
         tuple(sum(place == i for place in chosen) for i in range(m))
         for chosen in combinations_with_replacement(range(m), degree)
@@ -47,17 +48,17 @@ def monomials(m: int, degree: int) -> list[Monomial]:
 
 
 def powers(w: np.ndarray, exponents: Sequence[Monomial]) -> np.ndarray:
-    """Values of monomials, shape (len(w), number), at points w of shape (n, m)."""
+    """Return the values of monomials, shape (n, number), at points w of shape (n, m)."""
     return np.stack([np.prod(w ** np.array(a), axis=1) for a in exponents], axis=1)
 
 
 def values_of(series: Mapping[Monomial, np.ndarray], w: np.ndarray) -> np.ndarray:
-    """Values of a polynomial, shape (n, ...), at points w of shape (n, m)."""
+    """Return the values of a polynomial, shape (n, ...), at points w of shape (n, m)."""
     return powers(w, list(series)) @ np.array(list(series.values()))
 
 
 def substitution(linear: np.ndarray, degree: int, flow: bool) -> np.ndarray:
-    """T with (L w)^a = sum_b T[a, b] w^b, or, for flows, the derivative of w^a along L w."""
+    """Return the matrix T with (L w)^a = sum_b T[a, b] w^b; for flows, with the derivative of w^a along L w on the left side."""
     m = len(linear)
     wanted = monomials(m, degree)
     place = {a: i for i, a in enumerate(wanted)}
@@ -78,12 +79,12 @@ def substitution(linear: np.ndarray, degree: int, flow: bool) -> np.ndarray:
 
 
 class Reduction:
-    """The centre manifold of a problem at one point, degree by degree.
+    """Centre manifold and normal form of a problem at one point, computed degree by degree.
 
     Parameters
     ----------
     forms : Forms
-        The point, with J, K and ``rests``.
+        Equations at the point: J, K and ``rests`` are used.
     vectors : ndarray of complex, shape (N, m)
         Critical directions; those of complex coordinates in conjugate pairs.
     linear : ndarray of complex, shape (m, m)
@@ -91,9 +92,16 @@ class Reduction:
     real : ndarray of complex, shape (m, m)
         w = real @ xi for real xi: (1, i; 1, -i) for a conjugate pair.
     stay : sequence of (int, Monomial)
-        Which monomials may stand in which equation of the normal form.
+        Terms of the normal form: index of the equation, exponents of the monomial.
     radius : float
-        Of the samples, in units of the unknowns.
+        Radius of the samples, in units of the unknowns.
+
+    Attributes
+    ----------
+    H : dict of Monomial -> ndarray, shape (N,)
+        Coefficients of the manifold.
+    N : dict of Monomial -> ndarray, shape (m,)
+        Coefficients of the normal form.
     """
 
     def __init__(
@@ -114,15 +122,21 @@ class Reduction:
         self.degree = 1
 
     def to(self, degree: int) -> Reduction:
-        """Go on to a degree."""
+        """Compute all terms up to a degree.
+
+        Raises
+        ------
+        ValueError
+            If the equations cannot be evaluated at a sample.
+        """
         while self.degree < degree:
             self.degree += 1
             self._balance(self.degree)
         return self
 
-    # ------------------------------------------------------------------ what is left over
+    # ------------------------------------------------------------------ residual of the homological equations
     def _rest(self, w: np.ndarray) -> np.ndarray:
-        """What H and N, as far as they are known, leave over in the equations at points w, shape (n, N)."""
+        """Return the residual of the homological equations with the current H and N at points w, shape (n, N)."""
         here, drift = np.real(values_of(self.H, w)), values_of(self.N, w)
         if not self.forms.flow:
             return self.forms.rests(here, np.real(values_of(self.H, drift)))
@@ -133,13 +147,13 @@ class Reduction:
         return self.forms.rests(here, None) - np.real(rate)
 
     def _left_over(self, degree: int) -> np.ndarray:
-        """Taylor coefficients of this degree of what is left over, shape (number of monomials, N)."""
+        """Return the Taylor coefficients of this degree of the residual, shape (number of monomials, N)."""
         wanted = monomials(self.m, degree)
         lines = directions(self.m, degree)
         points = lines @ self.real.T
         sizes = np.abs(points).max(axis=1) * max(float(np.abs(self.vectors).max()), TINY)
         radii = self.radius / sizes
-        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+        with np.errstate(over="ignore", invalid="ignore"):  # tested below
             samples = self._rest(
                 ((radii[:, None] * chebyshev_nodes(NODES))[:, :, None] * points[:, None, :]).reshape(
                     -1, self.m
@@ -151,8 +165,9 @@ class Reduction:
         values = np.einsum("k,lkn->ln", taylor_weights(NODES, degree), samples) / radii[:, None] ** degree
         return np.linalg.lstsq(powers(points, wanted), values.astype(complex), rcond=None)[0]
 
-    # ------------------------------------------------------------------ what balances it
+    # ------------------------------------------------------------------ new terms
     def _balance(self, degree: int) -> None:
+        """Compute the terms of H and N of one degree; monomials are solved for one by one if L is diagonal, else together."""
         wanted, left = monomials(self.m, degree), self._left_over(degree)
         table = substitution(self.linear, degree, self.forms.flow)
         diagonal = np.abs(table - np.diag(np.diag(table))).max() == 0.0
@@ -161,6 +176,7 @@ class Reduction:
             self._solve(group, wanted, left, table)
 
     def _solve(self, group: list[int], wanted: list[Monomial], left: np.ndarray, table: np.ndarray) -> None:
+        """Solve the linear equations for the terms of a group of monomials (indices into `wanted`)."""
         forms, n = self.forms, self.forms.n
         open_ = forms.J if forms.flow else forms.J - forms.K
         allowed = [(i, b) for b in group for i, a in self.stay if a == wanted[b]]
@@ -175,7 +191,7 @@ class Reduction:
                 if place == b:
                     matrix[rows, size + k] = forms.K @ self.vectors[:, i]
         side = -left[group].reshape(-1)
-        if len(group) == 1 and allowed:  # no part along the critical vectors
+        if len(group) == 1 and allowed:  # additional equations w.K h = 0: no part along the critical vectors
             lefts = [forms.null(table[group[0], group[0]])[1] for _ in allowed]
             rows = np.array([np.append(w @ forms.K, np.zeros(len(allowed))) for w in lefts])
             matrix, side = np.vstack([matrix, rows]), np.append(side, np.zeros(len(allowed)))
@@ -188,7 +204,7 @@ class Reduction:
 
 @cache
 def directions(m: int, degree: int) -> np.ndarray:
-    """Lines through the origin in m real coordinates that tell the monomials of a degree apart well, unit vectors of shape (n, m)."""
+    """Return lines through the origin in m real coordinates that distinguish the monomials of a degree well: unit vectors, shape (n, m)."""
     wanted = monomials(m, degree)
     count = int(np.ceil(SPREAD * len(wanted))) + 1
     if m == 1:
@@ -200,7 +216,7 @@ def directions(m: int, degree: int) -> np.ndarray:
     lines /= np.linalg.norm(lines, axis=1)[:, None]
     chosen: list[int] = []
     left = np.arange(len(lines))
-    while len(chosen) < count:  # those whose monomials are most independent, then once more of what is left
+    while len(chosen) < count:  # lines with the most independent monomials, then again among the others
         pivots = np.asarray(qr(powers(lines[left], wanted).T, mode="r", pivoting=True)[-1])[: len(wanted)]
         chosen += left[pivots].tolist()
         left = np.delete(left, pivots)
@@ -208,6 +224,7 @@ def directions(m: int, degree: int) -> np.ndarray:
 
 
 def _less(exponents: Monomial, j: int) -> Monomial:
+    """Return the exponents with the j-th one lowered by one."""
     return tuple(e - (i == j) for i, e in enumerate(exponents))
 
 
@@ -220,13 +237,14 @@ def reduced(
     degree: int,
     wanted: Callable[[dict[Monomial, np.ndarray]], Mapping[str, float]],
 ) -> dict[str, float]:
-    """Coefficients of a normal form, from the radius of the samples at which they are known best.
+    """Compute the coefficients of a normal form, from the radius of samples at which they are most accurate.
 
     Parameters
     ----------
     forms, vectors, linear, real, stay
         As for :class:`Reduction`.
     degree : int
+        Degree of the normal form.
     wanted : callable
         N -> coefficients by name.
 
@@ -235,7 +253,7 @@ def reduced(
     ValueError
         If the equations cannot be evaluated near the point, or the coefficients are not known to two digits.
     """
-    # the vectors are as long as the user's units say; the reduction is made with longer or shorter ones, of length one in those of `forms`
+    # the vectors have unit length in the user's units; the reduction uses vectors of unit length in the units of `forms`
     lengths = np.linalg.norm(vectors, axis=0)
     if np.count_nonzero(linear - np.diag(np.diag(linear))):
         lengths[:] = lengths[0]  # a Jordan chain
@@ -255,7 +273,7 @@ def reduced(
                 error, best = change, own
                 if error < NORMAL_FORMS.enough:
                     break
-            elif error < NORMAL_FORMS.digits and change > 100.0 * error:  # rounding takes over
+            elif error < NORMAL_FORMS.digits and change > 100.0 * error:  # rounding dominates
                 break
         before = now
     if not error < NORMAL_FORMS.digits:

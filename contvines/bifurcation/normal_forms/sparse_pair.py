@@ -1,11 +1,11 @@
-"""The first Lyapunov coefficient of equations with a sparse Jacobian, from sparse solves and derivatives along lines.
+"""First Lyapunov coefficient of equations with a sparse Jacobian, from sparse solves and derivatives along lines.
 
 With A q = i omega q and w A = i omega w, B and C the second and third derivatives,
 
     c = w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.q),   A h11 = -B(q, q*),  (A - 2 i omega) h20 = -B(q, q);   l1 = Re c / omega
 
 as in :mod:`.coefficients`. Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., section 5.4, (5.34). The derivatives are
-taken from F_u at Chebyshev nodes on the lines along the real and the imaginary part of q, of which only products with vectors are kept.
+taken from F_u at Chebyshev nodes on the lines along the real and the imaginary part of q; only its products with vectors are stored.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from .taylor import NODES, RADIUS, SMALLER, taylor_weights
 if TYPE_CHECKING:
     from ...problems.protocol import Problem
 
-RADII = 14  # at most
-WORSE = 8.0  # growth of the change from one radius to the next at which rounding has taken over
-SWEEPS = 12  # of inverse iteration, at most
+RADII = 14  # largest number of radii
+WORSE = 8.0  # ratio of the change between radii to the least one from which rounding dominates
+SWEEPS = 12  # largest number of inverse iterations
 
 Solve = Callable[[np.ndarray], np.ndarray]
 Products = Callable[[np.ndarray, np.ndarray], "np.ndarray | None"]
 
 
 def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex) -> Coefficient:
-    """l1 of an equilibrium whose F_u is sparse.
+    """Compute l1 at a Hopf point of equations whose F_u is sparse.
 
     Parameters
     ----------
@@ -46,12 +46,12 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     u, p
         The Hopf point.
     critical : complex
-        The eigenvalue with positive imaginary part, as the user's equations have it.
+        The critical eigenvalue with positive imaginary part, in the user's unit of time.
 
     Raises
     ------
     ValueError
-        If the equations cannot be evaluated near the point, or F_u has no factors; with the reason.
+        If the equations cannot be evaluated near the point, or F_u cannot be factorised; the message gives the reason.
     """
     scales = problem.scales
     units = np.ones(len(u)) if scales is None else np.asarray(scales.unknowns, dtype=float)
@@ -70,7 +70,7 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     base = base.copy()
 
     def changes(v: np.ndarray, vectors: np.ndarray) -> np.ndarray | None:
-        """Change of F_u between the point and v, times vectors; what is large and constant drops out before it is rounded."""
+        """Return (F_u(v) - F_u(point)) times vectors; the difference of the matrices removes large constant entries before they add rounding."""
         there = jacobian(v)
         return (
             None if there is None else ((there - base) @ (units[:, None] * vectors)) / (rate * units)[:, None]
@@ -93,7 +93,7 @@ def _coefficient(
     solve: tuple[Solve, Solve],
     reach: float,
 ) -> Coefficient:
-    """l1 from the radius of the samples at which it is known best, and its change to the next one."""
+    """Return l1 from the radius of samples with the least change to the next radius; this change is its error."""
     q, w = pair
     radius = RADIUS * reach / float(np.abs(q).max())
     best, before = Coefficient(np.nan, np.inf), None
@@ -116,7 +116,7 @@ def _coefficient(
 def _at_radius(
     changes: Products, u: np.ndarray, q: np.ndarray, w: np.ndarray, solve: tuple[Solve, Solve], radius: float
 ) -> float | None:
-    """Re c from samples up to a radius; None where the equations cannot be evaluated there."""
+    """Return Re c from samples up to a radius; None if the equations cannot be evaluated there."""
     parts = np.column_stack([np.real(q), np.imag(q)])
     a, b = (_derivatives(changes, u, part, parts, radius) for part in parts.T)
     if a is None or b is None:
@@ -139,7 +139,7 @@ def _at_radius(
 def _derivatives(
     changes: Products, u: np.ndarray, x: np.ndarray, vectors: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """B(x, v) and C(x, x, v) for some vectors v, columns as they are."""
+    """Return B(x, v) and C(x, x, v) for the columns v of `vectors`, as columns; None if the equations cannot be evaluated."""
     first, second = taylor_weights(NODES, 1), 2.0 * taylor_weights(NODES, 2)
     one, two = np.zeros_like(vectors), np.zeros_like(vectors)
     for t, a, b in zip(chebyshev_nodes(NODES), first, second, strict=True):
@@ -152,7 +152,7 @@ def _derivatives(
 
 
 def _factors(matrix: sp.csc_array) -> Solve:
-    """What solves with a sparse matrix, real or complex sides."""
+    """Return a function that solves with a sparse matrix, for real or complex right-hand sides."""
     try:
         factors = splu(matrix.tocsc().astype(complex))
     except RuntimeError as error:
@@ -161,7 +161,7 @@ def _factors(matrix: sp.csc_array) -> Solve:
 
 
 def _null(matrix: sp.csc_array, value: complex, n: int) -> tuple[complex, np.ndarray, np.ndarray]:
-    """An eigenvalue that is nearly known, its right and its left eigenvector, by inverse iteration."""
+    """Return the eigenvalue near `value`, its right and its left eigenvector, by inverse iteration."""
     size, one = float(abs(matrix).max()), sp.eye_array(n)
     for offset in (0.0, ROUNDED * size * (1.0 + 0.3j)):
         try:

@@ -1,8 +1,8 @@
 """Second and third derivatives of a problem along given directions, from its Jacobians on a line through the point.
 
-J(u + t x) is sampled at Chebyshev nodes in [-r, r] and fitted; its first and second derivative at t = 0 are the matrices
-B(x, .) and C(x, x, .). The Jacobians are exact where the problem's are, so one or two derivatives remain, and the fit
-converges like the Taylor series at the distance r. Two radii give an estimate of the error.
+J(u + t x) is sampled at Chebyshev nodes t in [-r, r] and fitted by a polynomial; its first and second derivatives at t = 0 are the matrices
+B(x, .) and C(x, x, .). Only one or two derivatives are taken numerically, and the fit converges like the Taylor series at the
+distance r. Two radii give an estimate of the error.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from numpy.polynomial.chebyshev import cheb2poly
 from ..locate import chebyshev_nodes, chebyshev_series
 from ..settings import NORMAL_FORMS
 
-NODES = 12
-FEW = 5  # nodes where a few digits do
-RADIUS = 0.4  # relative to the scale of the unknowns
-SMALLER = 0.6
-ROUGH = 0.02  # of the largest radius
+NODES = 12  # Chebyshev nodes on a line
+FEW = 5  # nodes, if a few digits are enough
+RADIUS = 0.4  # first radius, relative to the scale of the unknowns
+SMALLER = 0.6  # ratio of successive radii
+ROUGH = 0.02  # radius relative to the first one, if a few digits are enough
 
 
 class Line(NamedTuple):
-    """B(x, .) and C(x, x, .) as matrices, and estimates of their largest errors."""
+    """Derivatives along a line: B(x, .) and C(x, x, .) as matrices, and estimates of their largest errors."""
 
     second: np.ndarray
     third: np.ndarray
@@ -40,19 +40,21 @@ def along_line(
     scale: float = 1.0,
     rough: bool = False,
 ) -> Line | None:
-    """Derivatives of the Jacobian along a direction; None where it cannot be evaluated.
+    """Compute the derivatives of the Jacobian along a direction; None if it cannot be evaluated.
 
     Parameters
     ----------
     jacobians : callable
-        points (k, N) -> F_u there, of any shape (k, m, N); None: not evaluable.
+        points, shape (k, N) -> F_u there, of any shape (k, m, N); None if not evaluable.
     u : ndarray, shape (N,)
+        The point.
     x : ndarray, shape (N,)
+        The direction.
     scale : float
         Typical size of the unknowns.
     rough : bool
-        One radius and few nodes: a few digits, for scanning. The error of the second derivative is then that of its differences
-        over the inner and the outer nodes, which is more than that of the fit.
+        Use one radius and few nodes, for a few digits. The error of the second derivative is then estimated from differences over the inner and the
+        outer nodes, which is larger than the error of the fit.
     """
     size = float(np.abs(x).max())
     if size == 0.0:
@@ -84,7 +86,7 @@ def along_line(
             if best is None or errors[1] < best.third_error:
                 best, reach = Line(*wide, *errors), radius / SMALLER
             elif errors[1] > 8.0 * best.third_error and best.third_error * reach**2 <= largest():
-                break  # rounding grows; where the samples reached too far to say anything, a smaller radius may
+                break  # rounding grows; go on only if all radii so far were too large to converge
             sizes = [float(np.abs(part).max()) for part in wide]
             if all(error <= NORMAL_FORMS.enough * most for error, most in zip(errors, sizes)):
                 break
@@ -93,7 +95,7 @@ def along_line(
 
 
 def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """First and second derivative at the middle."""
+    """Return the first and second derivatives at the middle from samples at Chebyshev nodes."""
     first, second = (
         k * (taylor_weights(len(samples), k) @ samples.reshape(len(samples), -1)) for k in (1, 2)
     )
@@ -103,6 +105,6 @@ def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]
 
 @cache
 def taylor_weights(count: int, degree: int) -> np.ndarray:
-    """Weights of samples at Chebyshev nodes in the coefficient of t^degree of the polynomial through them, on [-1, 1]."""
+    """Return the weights, shape (count,), with which samples at Chebyshev nodes in [-1, 1] give the coefficient of t^degree of their polynomial."""
     parts = [cheb2poly(row)[degree] if k >= degree else 0.0 for k, row in enumerate(np.eye(count))]
     return np.array(parts) @ chebyshev_series(count)
