@@ -1,4 +1,4 @@
-"""Branch: an ordered family of solutions of one problem; and why it ends, as data, of which the sentence is made last."""
+"""Branch: an ordered family of solutions of one problem; Ending: the reason why a branch ends, as data from which the sentence is made."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Reason(StrEnum):
-    """Why a branch ends; the first ones are those of the continuation loop (:class:`contvines.continuation.layout.Status`)."""
+    """Reason why a branch ends; the first ones are those of the continuation loop (:class:`contvines.continuation.layout.Status`)."""
 
     RUNNING = "running"
     LEFT_INTERVAL = "left-interval"
@@ -34,14 +34,14 @@ class Reason(StrEnum):
     ESCAPED = "escaped"
     CREEPING = "creeping"
     COARSE = "coarse"
-    LEAVES = "leaves"
-    GOES_ON = "goes-on"
-    REACHES = "reaches"
-    MEETS = "meets"
-    MEETS_SYMMETRIC = "meets-symmetric"
-    COMES_BACK = "comes-back"
-    STOPS = "stops"
-    SAID = "said"
+    LEAVES = "leaves"  # begins at a special point of another branch
+    GOES_ON = "goes-on"  # continues another branch beyond its border, with the same equations
+    REACHES = "reaches"  # ends at a special point of its own
+    MEETS = "meets"  # ends at a special point of another branch
+    MEETS_SYMMETRIC = "meets-symmetric"  # ends at a special point of a branch of more symmetric solutions
+    COMES_BACK = "comes-back"  # the same, if that branch has not been traced
+    STOPS = "stops"  # ends at a zero of a user function
+    SAID = "said"  # only a sentence is known
 
 
 @dataclass(frozen=True)
@@ -52,15 +52,16 @@ class Ending:
     ----------
     reason : Reason
     value : float
-        Parameter value there.
+        Parameter value at the end.
     point : str or None
-        Label of the special point there.
+        Label of the special point at the end.
     other : str or None
-        Label of the other branch: the one that is left, gone on from or met.
+        Label of the other branch: the one that this branch leaves, continues or meets.
     kind : str or None
-        Kind of the special point as this branch sees it.
+        Kind of the special point as located on this branch.
     text : str
-        What the problem says of it; for SAID the whole sentence, of a file of version 0.1 or of something that is no branch.
+        The problem's explanation, or the name of the user function. For SAID the whole sentence: from a file of version 0.1, or for a family
+        of solutions that is no branch.
     """
 
     reason: Reason
@@ -72,25 +73,25 @@ class Ending:
 
     @classmethod
     def of(cls, status: Status, value: float) -> Ending:
-        """The ending by which the continuation loop stopped."""
+        """Return the ending for a status of the continuation loop."""
         return cls(Reason[status.name], float(value))
 
     @classmethod
     def said(cls, text: str) -> Ending:
-        """An ending of which only a sentence is known."""
+        """Return an ending that is only a sentence."""
         return cls(Reason.SAID, text=text)
 
     @classmethod
     def from_dict(cls, content: dict[str, Any]) -> Ending:
-        """What `to_dict` made."""
+        """Rebuild an ending from the result of `to_dict`."""
         return cls(**{**content, "reason": Reason(content["reason"])})
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON scalars."""
+        """Return the ending as a dict of JSON scalars."""
         return {**asdict(self), "reason": self.reason.value}
 
     def sentence(self, parameter: str, unit: float = 1.0) -> str:
-        """The ending for people; ``unit`` is the size of the parameter, beside which rounding is zero."""
+        """Return the ending as a sentence; ``unit`` is the typical size of the parameter, relative to which rounding is shown as zero."""
         at = f"{parameter} = {number_text(self.value, 10, unit)}"
         match self.reason:
             case Reason.SAID:
@@ -124,30 +125,32 @@ class Branch:
     problem : Problem or None
         None after loading a graph whose problem came from a Python callable.
     points : ndarray, shape (n, N)
+        Unknowns.
     values : ndarray, shape (n,)
         Parameter values.
     tangents : ndarray, shape (n, N + 1)
         Unit tangents (in the metric of the continuation), all pointing forward along the stored order.
     multipliers : ndarray of complex, shape (n, m)
-        Of the full period (eigenvalues for flows).
+        Multipliers of the full period (eigenvalues for flows).
     margin : ndarray, shape (n,)
         Smallest margin, +inf for a problem without margins.
     stable : ndarray of bool, shape (n,), or None
-        A special point counts as stable when one of its neighbours is. None: stability is not computed, as for a problem
+        A special point counts as stable if one of its neighbours is. None if stability is not computed, as for a problem
         with ``spectrum="none"``.
     real : bool
-        False: beyond a border, no machine follows it.
+        False for a virtual branch: it lies beyond a border, and no machine can follow it.
     endings : (Ending, Ending)
-        Why the branch ends, at its first and at its last point; as sentences in ``ended``.
+        Reasons why the branch ends, at its first and at its last point; as sentences in ``ended``.
     closed : bool
-        The last point is the first one again (modulo the shift by a period).
+        True if the last point is the first one again (modulo the shift by a period).
     seed : str or None
         Label of the special point from which the branch was reached.
     marks : tuple of (int, str)
         Index and label of each special point on the branch, in order.
     description : dict
-        What ``problem.describe()`` said.
+        Result of ``problem.describe()``.
     parameter : str
+        Name of the continuation parameter.
     """
 
     label: str
@@ -179,13 +182,13 @@ class Branch:
         return branch_page(self)
 
     def to_pandas(self):
-        """The points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
+        """Return the points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
         from ..export.frames import branch_frame
 
         return branch_frame(self)
 
     def to_xarray(self):
-        """The branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
+        """Return the branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
         from ..export.frames import branch_dataset
 
         return branch_dataset(self)
@@ -197,15 +200,15 @@ class Branch:
 
     @property
     def ended(self) -> tuple[str, str]:
-        """Why the branch ends, at its first and at its last point, in words."""
+        """Reasons why the branch ends, at its first and at its last point, as sentences."""
         unit = float(np.abs(self.values).max(initial=0.0))
         first, last = (ending.sentence(self.parameter, unit) for ending in self.endings)
         return first, last
 
     def pieces(self) -> list[tuple[int, int, bool | None]]:
-        """Runs of equal stability: (first, last, stable) with inclusive indices, neighbours sharing a point.
+        """Return the runs of equal stability as (first, last, stable), with inclusive indices; neighbouring runs share a point.
 
-        One run, ``stable`` None, where stability is not computed.
+        If stability is not computed, there is one run with ``stable`` None.
         """
         n = len(self)
         if self.stable is None or n < 2:
@@ -217,7 +220,10 @@ class Branch:
         return [(a, b, bool(segment[a])) for a, b in zip(starts, stops, strict=True)]
 
     def stable_intervals(self) -> list[tuple[float, float]]:
-        """Parameter intervals of the pieces that are known to be stable, in increasing order; on a closed branch none is cut where it begins."""
+        """Return the parameter intervals of the stable pieces, in increasing order.
+
+        On a closed branch a stable piece through the first point gives one interval.
+        """
         pieces = self.pieces()
         parts = [self.values[first : last + 1] for first, last, stable in pieces if stable]
         if self.closed and len(pieces) > 1 and pieces[0][2] and pieces[-1][2]:
@@ -226,21 +232,24 @@ class Branch:
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Names that `measure` knows beside the parameter's own; without a problem ``norm``, and of flows what needs no right-hand side."""
+        """Names of measures, apart from the parameter.
+
+        Without a problem: ``norm``, or for flows the measures that need no right-hand side.
+        """
         bare = self._bare
         names = ("norm",) if bare is None else bare.names
         names = names if self.problem is None else self.problem.measure_names
         return tuple(str(name) for name in names if name != self.parameter)
 
     def measure(self, name: str) -> np.ndarray:
-        """A measure along the branch, shape (n,); names: `measure_names`, and the parameter's own name.
+        """Return a measure along the branch, shape (n,); its name is one of `measure_names` or the parameter's name.
 
         Raises
         ------
         KeyError
             If the problem has no such measure.
         """
-        # pictures and surveys ask for the same one again and again
+        # results are stored: pictures and surveys need the same measure many times
         known = vars(self).setdefault("_measured", {})
         points, values, found = known.get(name, (None, None, None))
         if points is not self.points or values is not self.values:
@@ -249,7 +258,23 @@ class Branch:
         return np.array(found)
 
     def measure_of(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
-        """A measure of other solutions of this branch's problem: `u` of shape (m, N), `p` and the result of shape (m,)."""
+        """Return a measure of other solutions of this branch's problem.
+
+        Parameters
+        ----------
+        name : str
+        u : ndarray, shape (m, N)
+        p : ndarray, shape (m,)
+
+        Returns
+        -------
+        ndarray, shape (m,)
+
+        Raises
+        ------
+        KeyError
+            If there is no such measure.
+        """
         if name == self.parameter:
             return np.asarray(p, dtype=float)
         if self.problem is None:
@@ -261,35 +286,43 @@ class Branch:
 
     @property
     def default_measure(self) -> str:
-        """Name of the measure that pictures show if none is named; empty where the problem is not known."""
+        """Name of the measure that pictures show by default; empty if the problem is not known."""
         if self.problem is not None:
             return self.problem.default_measure
         return "" if self._bare is None else f"max {self._bare.states[0]}"
 
     @property
     def _bare(self) -> MeasuresWithoutRates | None:
-        """What is measured of a flow that was loaded without its problem."""
+        """Measures of a flow that was loaded without its problem; None for other branches."""
         if self.problem is not None or "flow" not in self.description:
             return None
-        from ..flows.measures import measures_without_rates  # which diagrams of machines do without
+        from ..flows.measures import measures_without_rates  # not needed for machines
 
         return measures_without_rates(self.description, self.points.shape[1])
 
     @property
     def attached(self) -> Problem:
-        """The problem.
+        """The problem of the branch.
 
         Raises
         ------
         ValueError
-            If there is none, as after loading.
+            If there is none, as after loading a graph of Python callables.
         """
         if self.problem is None:
             raise ValueError(without_problem(self.label, self.description))
         return self.problem
 
     def orbit(self, i: int) -> Any:
-        """The solution at point i as the object that the problem hands to users; at a border with the multipliers' limits."""
+        """Return the solution at point i as the problem's object for users, for example an orbit; at a border with the multipliers' limits.
+
+        Raises
+        ------
+        TypeError, IndexError
+            If `i` is not the number of a point.
+        ValueError
+            If the branch has no problem.
+        """
         n = len(self)
         if not isinstance(i, int | np.integer):
             raise TypeError(f"{self.label}.orbit({i!r}): give the number of a point, from 0 to {n - 1}")
@@ -312,10 +345,11 @@ class Branch:
         Parameters
         ----------
         within : (float, float), optional
+            Interval of the parameter; the whole branch by default.
         bits : int, optional
             Not used: stretches are proved with a fixed precision.
         special : dict, optional
-            The graph's special points by label: stretches then go up to the points themselves.
+            The graph's special points by label; the proved stretches then extend to the points themselves.
 
         Raises
         ------
@@ -330,7 +364,7 @@ class Branch:
         return self.problem.prove_branch(self.points, self.values, [i for i, _ in self.marks], within, known)
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry of this branch in the JSON of a graph."""
+        """Return the entry of this branch in the JSON of a graph."""
         about = self.description
         return {
             "label": self.label,
@@ -351,6 +385,7 @@ class Branch:
 
 
 def _bare_measure(label: str, name: str, u: np.ndarray) -> np.ndarray:
+    """Return ``norm``, or an unknown as ``u0``, ``u1`` ..., of solutions without a problem."""
     if name == "norm":
         return np.linalg.norm(u, axis=1)
     if name.startswith("u") and name[1:].isdigit() and int(name[1:]) < u.shape[1]:

@@ -1,7 +1,8 @@
-"""HalfBranch: what has been found of a branch, as pieces in order; put together, with its stability, at the end.
+"""HalfBranch: the points of a branch on one side of its start, as pieces in order; they are joined, and stability determined, at the end.
 
-On a finer mesh what has been found is read again, and the branch goes on there. A polynomial on an interval is the same one on both halves of it. So
-points stay as they were solved, with the error of their mesh, which was small enough where they are; special points are located again.
+If the mesh becomes too coarse, the points so far are transferred to a finer mesh, and the branch continues there. A polynomial on an interval is the
+same polynomial on both halves of it, so points are transferred without solving again, and keep the error of their mesh, which was small enough
+for them; special points are located again.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from . import Branch, Ending
 
+# kinds at which stability can change
 LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
-BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
+BEGINNING = ("fold",)  # kind that stands for the beginning of a branch: a multiplier is 1 there
 Start = TypeVar("Start")
-FAR = 1e-3  # of a typical size: from the same point on the mesh before
+FAR = 1e-3  # largest change of a point, in the metric, when it is solved on the finer mesh
 
 
 class Piece(NamedTuple):
@@ -42,12 +44,12 @@ class Piece(NamedTuple):
     smallest: np.ndarray
 
     def part(self, start: int, stop: int | None = None) -> Piece:
-        """Points start to stop."""
+        """Return the points from start up to, and without, stop."""
         return Piece(*(array[start:stop] for array in self))
 
 
 def piece_of(engine: Engine, *points: Solved) -> Piece:
-    """A piece of some points."""
+    """Return some points as a piece."""
     u, p, tangents, rows = (
         np.array([getattr(q, name) for q in points]) for name in ("u", "p", "tangent", "row")
     )
@@ -56,9 +58,20 @@ def piece_of(engine: Engine, *points: Solved) -> Piece:
 
 @dataclass
 class HalfBranch:
-    """Points of a branch in order, and the events with their indices among them; `first` are the unknowns where the loop began.
+    """Points of a branch in order, with events.
 
-    `detector` has found all points: where a mesh became too coarse on the way, that of the finer one.
+    Attributes
+    ----------
+    detector : Detector
+        Detector of all points; after a mesh became too coarse, that of the finer mesh.
+    pieces : list of Piece
+        The points.
+    events : list of (int, Located)
+        Index of the point, and the event.
+    status : Status
+        Reason why the half branch ended.
+    first : ndarray or None
+        Unknowns at the start of the continuation loop.
     """
 
     detector: Detector
@@ -80,18 +93,18 @@ class HalfBranch:
         return float(self.pieces[-1].values[-1])
 
     def joined(self) -> Piece:
-        """All points as one piece, in order."""
+        """Return all points as one piece, in order."""
         if len(self.pieces) > 1:
             self.pieces = [Piece(*map(np.concatenate, zip(*self.pieces, strict=True)))]
         return self.pieces[0]
 
     def at(self, i: int) -> tuple[np.ndarray, float, np.ndarray]:
-        """(u, p, tangent) of point i."""
+        """Return (u, p, tangent) of point i."""
         whole = self.joined()
         return whole.points[i], float(whole.values[i]), whole.tangents[i]
 
     def reversed(self) -> HalfBranch:
-        """The same points in opposite order, tangents turned round."""
+        """Return the same points in opposite order, with tangents reversed."""
         last, whole = len(self) - 1, Piece(*(array[::-1] for array in self.joined()))
         events = [
             (last - i, replace(e, point=e.point._replace(tangent=-e.point.tangent)))
@@ -100,19 +113,19 @@ class HalfBranch:
         return replace(self, pieces=[whole._replace(tangents=-whole.tangents)], events=events)
 
     def extended(self, other: HalfBranch, skip: int = 0) -> HalfBranch:
-        """This half, then the other one without its first ``skip`` points."""
+        """Return this half branch followed by the other one without its first ``skip`` points."""
         shift = len(self) - skip
         events = self.events + [(i + shift, e) for i, e in other.events]
         return HalfBranch(self.detector, [*self.pieces, other.joined().part(skip)], events, other.status)
 
     def since(self, u: np.ndarray) -> HalfBranch:
-        """From the first point with these unknowns on."""
+        """Return the half branch from the first point with these unknowns on."""
         skip = int((self.joined().points == u).all(axis=1).argmax())
         events = [(i - skip, e) for i, e in self.events if i >= skip]
         return replace(self, pieces=[self.joined().part(skip)], events=events)
 
     def inserted(self, points: list[tuple[int, Solved]]) -> HalfBranch:
-        """With more points, each before the point that has its index now; in increasing order."""
+        """Return the half branch with more points (index, point), in increasing order; each is put before the current point of its index."""
         where = [i for i, _ in points]
         more = piece_of(self.engine, *(point for _, point in points))
         whole = Piece(*(np.insert(a, where, b, axis=0) for a, b in zip(self.joined(), more, strict=True)))
@@ -120,13 +133,13 @@ class HalfBranch:
         return replace(self, pieces=[whole], events=events)
 
     def put(self, i: int, point: Solved) -> None:
-        """Another point in the place of point i."""
+        """Replace point i."""
         whole = self.joined()
         pieces = whole.part(0, i), piece_of(self.engine, point), whole.part(i + 1)
         self.pieces = [piece for piece in pieces if len(piece.values)]
 
     def without(self, places: list[int]) -> HalfBranch:
-        """Without some points, and their events."""
+        """Return the half branch without some points and their events."""
         gone = sorted(set(places))
         whole = Piece(*(np.delete(array, gone, axis=0) for array in self.joined()))
         events = [(i - int(np.searchsorted(gone, i)), e) for i, e in self.events if i not in gone]
@@ -134,7 +147,7 @@ class HalfBranch:
 
 
 def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
-    """Located events as arrays and JSON scalars, for a journal."""
+    """Return located events as arrays and JSON scalars, for a journal."""
     n, m = engine.n, engine.row_size
     points = [e.point for e in events]
     return {
@@ -155,7 +168,7 @@ def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
 
 
 def unpack(record: dict[str, Any]) -> list[Located]:
-    """Located events from a journal."""
+    """Rebuild located events from the result of `pack`."""
     events = []
     for i, name in enumerate(record["kind"]):
         kind = RENAMED.get(str(name), str(name))
@@ -168,7 +181,10 @@ def unpack(record: dict[str, Any]) -> list[Located]:
 
 
 def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
-    """The half with a solved point between neighbouring special points, or ends, that have none between them."""
+    """Return the half branch with a solved point inserted between neighbouring special points, or ends, without a point between.
+
+    The stability between two special points needs such a point. `origin` is the index of the special point from which the branch was reached.
+    """
     engine, special = half.engine, {i for i, _ in half.events} | {0, len(half) - 1}
     if origin is not None:
         special.add(origin)
@@ -193,18 +209,18 @@ def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
 
 
 def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
-    """Whether solutions between neighbouring points of these kinds may be stable although those on both sides are not."""
+    """Whether solutions between neighbouring points of these kinds may be stable although those on both outer sides are not."""
     return any(a != b and {a, b} & LOST for a in one for b in other)
 
 
 def stability(
     engine: Engine, spectrum: np.ndarray, special: list[int], twins: Sequence[int] = ()
 ) -> np.ndarray | None:
-    """Which points count as stable; None where the problem has no spectrum that tells.
+    """Return which points count as stable, shape (n,); None if the problem has no spectrum.
 
-    A special point is stable when one of its neighbours is. A point with a multiplier on the circle to roundoff, as at the
-    end of an interval or where a multiplier crosses, takes the stability of the nearest point that can tell, up to the next
-    special point.
+    A special point is stable if one of its neighbours is. A point with a multiplier on the circle to rounding, as at the
+    end of an interval or where a multiplier crosses, takes the stability of the nearest point without one that no special point
+    separates from it.
 
     Parameters
     ----------
@@ -214,7 +230,7 @@ def stability(
     special : list of int
         Indices of the special points.
     twins : sequence of int
-        Indices of points that are a special point once more, as where a branch turns at a branch point: they do not tell.
+        Indices of points that coincide with a special point, as a fold where a branch turns at a branch point; their stability is not used.
     """
     if not engine.tells_stability:
         return None
@@ -232,7 +248,7 @@ def stability(
         near = known[run[known] == run[i]]
         stable[i] = (
             len(near) > 0 and stable[near[np.abs(near - i).argmin()]]
-        )  # where none tells nothing is attracted
+        )  # unstable if there is no such point
     ahead = stable & ordinary
     beside = np.zeros(len(stable), dtype=bool)
     beside[1:] = ahead[:-1]
@@ -248,7 +264,7 @@ def make_branch(
     closed: bool,
     seed: str | None,
 ) -> Branch:
-    """A Branch from what was found; ``marks``, and ``stable`` that depends on them, are left to the caller."""
+    """Return a Branch with the points of a half branch; the caller sets ``marks``, and ``stable``, which depends on them."""
     engine, whole = half.engine, half.joined()
     return Branch(
         label=label,
@@ -274,11 +290,11 @@ class Meshes:
     Parameters
     ----------
     detector : Detector
-        Of the first mesh.
+        Detector of the first mesh.
     detector_of : callable
-        The detector of a problem.
+        problem -> Detector.
     vanishes : callable, optional
-        Whether the solutions of a half shrink to nothing at its end, where equations are singular on every mesh: it ends there.
+        half branch -> whether its cycles shrink to an equilibrium at its end, where equations are singular on every mesh; no finer mesh is tried then.
     """
 
     def __init__(
@@ -291,7 +307,7 @@ class Meshes:
         self.detectors = [detector]  # in order of the meshes
 
     def finer(self, detector: Detector) -> Detector:
-        """The detector of the next mesh."""
+        """Return the detector of the next finer mesh."""
         place = self.detectors.index(detector) + 1
         if place == len(self.detectors):
             self.detectors.append(self.detector_of(_adaptive(detector.engine).refined()))
@@ -304,19 +320,28 @@ class Meshes:
         again: Callable[[Detector, Detector, Start], Start | None],
         real: bool,
     ) -> tuple[dict[str, HalfBranch], Detector, Start]:
-        """The halves of a branch, by the names of its sides, on one mesh, with the detector and the start of those that were followed last.
+        """Follow both sides of a branch, and bring them to one mesh, the finest that is needed.
+
+        A side that cannot be transferred to the finer mesh of the other one, or meets a mesh that is too coarse, is followed again on the finer mesh.
 
         Parameters
         ----------
         start
-            To begin with, on the first mesh.
+            Start on the first mesh.
         halves : callable
-            Follows the branch with a detector from a start, but for some of its sides.
+            (detector, start, sides to leave out) -> half branches by side.
         again : callable
-            A side that cannot be read on the finer mesh of the other one, or comes to a mesh that is too coarse, is followed again: from a
-            detector, that of the finer mesh and a start to the start there; None where there is none.
+            (detector, detector of the finer mesh, start) -> start on the finer mesh; None if there is none.
         real : bool
             Whether the branch has positive margins.
+
+        Returns
+        -------
+        halves : dict of str -> HalfBranch
+            Half branches by side.
+        detector : Detector
+        start
+            Detector and start of the sides that were followed last.
         """
         known, detector = dict[str, HalfBranch](), self.detectors[0]
         while True:
@@ -333,7 +358,7 @@ class Meshes:
             detector, start = wanted, begin
 
     def _level(self, half: HalfBranch, wanted: Detector, real: bool) -> HalfBranch | None:
-        """A half on a finer mesh; None where it is to be followed on that, or has other special points there."""
+        """Return a half branch on a finer mesh; None if it must be followed again there."""
         if half.status == Status.COARSE:
             return None
         while half.detector is not wanted:
@@ -346,7 +371,7 @@ class Meshes:
     def moved(
         self, detector: Detector, wanted: Detector, point: Solved | None, solve: bool = True
     ) -> Solved | None:
-        """How a point of a mesh reads on one of the finer ones; None where it cannot be solved there."""
+        """Transfer a point to a finer mesh, and solve for it there if `solve`; None if it cannot be solved."""
         while point is not None and detector is not wanted:
             before, detector = detector, self.finer(detector)
             point = _read(point, before.engine, detector.engine)
@@ -354,7 +379,7 @@ class Meshes:
         return point
 
     def read(self, half: HalfBranch, wanted: Detector) -> HalfBranch:
-        """A half on a finer mesh, as it is."""
+        """Transfer a half branch to a finer mesh without solving."""
         while half.detector is not wanted:
             detector, engine, problem = self.finer(half.detector), half.engine, _adaptive(half.engine)
             finer, whole = detector.engine, half.joined()
@@ -367,9 +392,12 @@ class Meshes:
         return half
 
     def onward(self, half: HalfBranch, real: bool) -> tuple[HalfBranch, Callable[[Solved], Solved]] | None:
-        """A half on the next mesh, and how points of its mesh read there; None where it has other special points there."""
+        """Transfer a half branch to the next mesh, and locate its special points again.
+
+        Returns the half branch and a function that transfers points of its old mesh; None if it has other special points on the new mesh.
+        """
         if _adaptive(half.engine).parts_of_refined != 1:
-            return None  # a mesh with other intervals altogether
+            return None  # the new mesh does not contain the old one
         coarse, detector = half.detector, self.finer(half.detector)
         found = self.read(half, detector)
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
@@ -389,7 +417,7 @@ def _adaptive(engine: Engine) -> Adaptive:
 
 
 def _read(point: Solved, engine: Engine, finer: Engine) -> Solved:
-    """How a point of a mesh reads on the next one."""
+    """Transfer a point to the next mesh without solving."""
     problem = _adaptive(engine)
     direction = problem.halved(point.tangent[:-1], True)
     tangent = finer.unit(finer.join(direction, float(point.tangent[-1])))
@@ -397,11 +425,15 @@ def _read(point: Solved, engine: Engine, finer: Engine) -> Solved:
 
 
 def _guess(half: HalfBranch, i: int) -> Solved:
+    """Return point i as a guess, without row and sign."""
     return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
 
 
 def _goes_on(half: HalfBranch, real: bool) -> bool:
-    """Whether the last point lies where it did, on this mesh: not far away, as a cycle that passes a saddle within rounding, and before a border."""
+    """Whether the last point, solved on this mesh, is nearly the same as before, and not behind a border.
+
+    It may be far away for a cycle that passes a saddle within rounding.
+    """
     guess = _guess(half, len(half) - 1)
     last = MeshMotion(half.engine).solved(guess)
     if last is None:
@@ -411,7 +443,7 @@ def _goes_on(half: HalfBranch, real: bool) -> bool:
 
 
 def _at_the_end(half: HalfBranch) -> bool:
-    """Solve for the last point, at its end of the interval."""
+    """Solve for the last point on its mesh, at the end of the parameter interval; whether it was found."""
     finer, last = half.engine, len(half) - 1
     u, p, tangent = half.at(last)
     _adaptive(finer).anchor(u, p)
@@ -423,7 +455,7 @@ def _at_the_end(half: HalfBranch) -> bool:
 
 
 def _located_again(half: HalfBranch, real: bool) -> bool:
-    """Locate the special points of a half between their neighbours on its mesh; whether they are the same ones."""
+    """Locate the special points of a half branch again on its mesh, between their neighbours; whether they are the same ones."""
     detector, events, half.events = half.detector, half.events, []
     places = sorted({i for i, _ in events})
     breaks = [k + 1 for k, (one, other) in enumerate(pairwise(places)) if other > one + 1]
@@ -435,12 +467,12 @@ def _located_again(half: HalfBranch, real: bool) -> bool:
         ends = [end for end in solved if end is not None]
         if len(ends) < 2:
             return False
-        _adaptive(half.engine).anchor(ends[0].u, ends[0].p)  # as while a chunk is looked at
+        _adaptive(half.engine).anchor(ends[0].u, ends[0].p)  # as during detection on a chunk
         chunk = packed(ends, Status.RUNNING)
         found = [e for e in detector.look(chunk, detector.scan(chunk), real) if e.role is not Role.PLAIN]
         _adaptive(half.engine).anchor(None)
         known = [(i, e) for i, e in events if low < i < high]
-        if not found:  # what was rounding on the mesh before
+        if not found:  # unresolved marks from rounding on the old mesh
             known = [(i, e) for i, e in known if e.role is not Role.UNRESOLVED]
         if [(e.kind, e.role, e.name) for e in found] != [(e.kind, e.role, e.name) for _, e in known]:
             return False

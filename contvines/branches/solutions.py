@@ -1,4 +1,4 @@
-"""The solutions of a branch at a value of its parameter."""
+"""Solutions of a branch at a value of its parameter."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import Branch
 
 
 def on_segment(engine: Engine, branch: Branch, i: int, at: float) -> Solved | None:
-    """The solution at a value of the parameter that lies on, or near, the segment from point i to the next one; None if there is none."""
+    """Solve for the solution at parameter value `at`, on or near the segment from point i to the next one; None if there is none."""
     first, last = branch.values[i : i + 2]
     part = 0.5 if first == last else (at - first) / (last - first)
     one, other = branch.points[i : i + 2]
@@ -21,7 +21,19 @@ def on_segment(engine: Engine, branch: Branch, i: int, at: float) -> Solved | No
 
 
 def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
-    """All real solutions of a branch at a value, each once, in order along it, and the engine that reads their rows.
+    """Solve for all real solutions of a branch at a value of the parameter.
+
+    Parameters
+    ----------
+    branch : Branch
+    at : float
+
+    Returns
+    -------
+    engine : Engine
+        Gives the multipliers and margins of the solutions' rows.
+    solutions : list of Solved
+        Each once, in order along the branch.
 
     Raises
     ------
@@ -33,7 +45,7 @@ def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
     values, found = branch.values, []
     engine = Engine(branch.problem, branch.range, Settings())
     for i, (first, last) in enumerate(pairwise(values)):
-        ends_here = last == at and i < len(values) - 2  # the next segment has it
+        ends_here = last == at and i < len(values) - 2  # this point belongs to the next segment
         if first == last or ends_here or (first - at) * (last - at) > 0.0:
             continue
         solved = on_segment(engine, branch, i, at)

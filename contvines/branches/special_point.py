@@ -1,4 +1,4 @@
-"""SpecialPoint: a located bifurcation, border or end, with its evidence."""
+"""SpecialPoint: a located bifurcation, border or end of a branch, with multipliers, errors and normal form."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 
 class Later:
-    """A field of a dataclass that is a number or None, or is set to a function without arguments that returns one.
+    """A field of a dataclass that is a number or None, and may be set to a function without arguments that computes it at first use.
 
-    The function is called once. Coefficients of normal forms and simulations of special points are a good part of the cost of a
-    diagram, and surveys of many diagrams look at neither.
+    Normal-form coefficients and simulations of special points take a good part of the time of a diagram, and surveys of many
+    diagrams need neither.
     """
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -43,7 +43,7 @@ class Later:
         vars(instance)[self.place] = value
 
 
-TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
+TRANSCRITICAL = "transcritical"  #: remark at a branch point: the leaving branch has a nonzero slope, so it is neither super- nor subcritical
 
 
 @hinted
@@ -54,7 +54,7 @@ class SpecialPoint:
     Attributes
     ----------
     label : str
-        Short and stable: LP1, SB1, PD1 ...
+        Label in the graph: LP1, SB1, PD1 ...
     kind : str
         Name of the kind; see :data:`contvines.KINDS`.
     branch : str
@@ -68,32 +68,32 @@ class SpecialPoint:
     tangent : ndarray, shape (N + 1,)
         Unit tangent of the branch, in the order in which the branch is stored.
     multipliers : ndarray of complex
-        Of the full period (eigenvalues for flows).
+        Multipliers of the full period (eigenvalues for flows).
     margins : float
         Smallest margin; +inf for a problem without margins.
     bracket : (float, float)
-        Parameter values between which the point was bracketed when first seen.
+        Parameter values between which the point was detected.
     residual : float
         Largest absolute residual at the point.
     location_error : float
         Estimated error of ``value``.
     real : bool
-        No margin is negative: a border point itself is real, whichever side it is seen from.
+        True if no margin is negative. A border point itself is real, even if located from its virtual side.
     criticality : {"supercritical", "subcritical"} or None
     coefficient : float or None
-        Normal-form coefficient (Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.5, 5.4, 7.4); worked out when it is first asked for.
+        Normal-form coefficient (Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.5, 5.4, 7.4); computed at first use.
     replay : float or None
-        Replay error by simulation; simulated when it is first asked for.
+        Deviation of an event-driven simulation from the solution; simulated at first use.
     multipliers_beyond : ndarray of complex or None
         At a border: multipliers of the solution on the other side.
     mirror : bool
-        The branch that leaves here has a mirror image that is not traced.
+        True if the branch that leaves here has a mirror image that is not traced.
     name : str
-        Of the user function, at its zeros.
+        Name of the user function, at its zeros.
     met_from : str or None
-        Label of the branch that came back here to more symmetric solutions.
+        Label of a branch of less symmetric solutions that ends here.
     remarks : tuple of str
-        What else there is to say, for people.
+        Further sentences for the user.
     margin_index : int or None
         Column of the margin that vanishes at a border.
     index : int
@@ -101,7 +101,7 @@ class SpecialPoint:
     problem : Problem or None
         None after loading a graph whose problem came from a Python callable.
     own_kind : Kind or None
-        The kind, where it is one of the user's own; None after loading.
+        The kind, if it is user-defined; None after loading.
     """
 
     label: str
@@ -132,18 +132,18 @@ class SpecialPoint:
 
     @property
     def note(self) -> str:
-        """Name of the user function, where the point was met from, and remarks, in words."""
+        """Name of the user function, label of the branch that ends here, and remarks, in one text."""
         met = f"met from {self.met_from}" if self.met_from else ""
         return "; ".join(filter(None, (self.name, met, *self.remarks)))
 
     @property
     def attached(self) -> Problem:
-        """The problem.
+        """The problem of the point.
 
         Raises
         ------
         ValueError
-            If there is none, as after loading.
+            If there is none, as after loading a graph of Python callables.
         """
         if self.problem is None:
             raise ValueError(without_problem(self.label))
@@ -151,8 +151,7 @@ class SpecialPoint:
 
     @property
     def frequency(self) -> float | None:
-        """Angular frequency of the pair on the stability boundary: omega at a Hopf point, the angle per period at a
-        Neimark-Sacker point; None at other points."""
+        """Angular frequency of the critical pair: omega at a Hopf point, the angle per period at a Neimark-Sacker point; None at other points."""
         upper = self.multipliers[np.imag(self.multipliers) > 0.0]
         if self.kind not in ("hopf", "neimark-sacker") or not len(upper):
             return None
@@ -162,14 +161,14 @@ class SpecialPoint:
 
     @property
     def eigenvectors(self) -> np.ndarray:
-        """Eigenvectors as columns, shape (N, m), of length one; column j belongs to ``multipliers[j]``.
+        """Eigenvectors as columns, shape (N, m), of unit length; column j belongs to ``multipliers[j]``.
 
-        Of dF/du; of a cycle of a map those of the product of its Jacobians, from its first point.
+        They belong to dF/du; for a cycle of a map to the product of its Jacobians, from its first point.
 
         Raises
         ------
         ValueError
-            If the problem is not attached or does not tell them.
+            If the problem is not attached or does not provide eigenvectors.
         """
         problem = self.attached
         if not isinstance(problem, Resolved):
@@ -180,9 +179,10 @@ class SpecialPoint:
 
     @property
     def orbit(self) -> Any:
-        """The solution as the object that its problem hands to users.
+        """The solution as the problem's object for users, for example an orbit.
 
-        At a border with the multipliers' one-sided limits; at a bifurcation its stability is undecided, unless multipliers are outside the circle.
+        At a border it has the one-sided limits of the multipliers. At a bifurcation its stability is undecided, unless other multipliers are
+        outside the circle.
         """
         found = self.attached.orbit(self.u, self.value)
         if self.kind in BORDERS and isinstance(found, Limited):
@@ -190,13 +190,13 @@ class SpecialPoint:
         return critical(found, self.kind)
 
     def plot(self, **options: Any) -> Figure:
-        """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
+        """Draw the solution as a matplotlib figure; see :func:`contvines.plots.portrait.plot_portrait`."""
         from ..plots.portrait import plot_portrait
 
         return plot_portrait(self.orbit, **options)
 
     def circles(self, to: float | None = None, **options: int):
-        """The invariant circles that are born at a Neimark-Sacker point, up to the parameter value `to`.
+        """Compute the invariant circles that are born at a Neimark-Sacker point, up to the parameter value `to`.
 
         Arguments, result and errors are those of :func:`contvines.circles.follow.circles`.
         """
@@ -205,7 +205,7 @@ class SpecialPoint:
         return circles(self, to, **options)
 
     def cycles(self) -> object:
-        """One of the small cycles that are born at a Hopf point: a seed for ``contvines.diagram``.
+        """Return one of the small cycles that are born at a Hopf point: a seed for ``contvines.diagram``.
 
         Raises
         ------
@@ -230,7 +230,7 @@ class SpecialPoint:
         return point_page(self)
 
     def prove(self, bits: int | None = None) -> object:
-        """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.
+        """Prove the point as a regular zero of its defining system, for problems with proofs: `orbits` with closed-form flights.
 
         Raises
         ------
@@ -244,7 +244,7 @@ class SpecialPoint:
         return self.problem.prove(self.kind, self.u, self.value, margin=self.margin_index, bits=bits)
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry of this point in the JSON of a graph."""
+        """Return the entry of this point in the JSON of a graph."""
         return {
             "label": self.label,
             "kind": self.kind,

@@ -1,8 +1,8 @@
-"""Following a branch in one direction with its events.
+"""Tracing: follow a branch in one direction, with its special points.
 
-Where it leaves a special point it begins with the opening: from there to the first point from which it is followed. That lies at a distance
-that suits the branch itself. Where others are near (the next doublings of a cascade, say) it may be one of those; where a border is near it may
-lie behind that. Then a first point is looked for that is nearer.
+A branch that leaves a special point begins with the "opening": the segment from the special point to the first point from which the branch is
+followed. If another branch is near (the next doubling of a cascade, for example) that first point may lie on it; if a border is near, it may lie
+behind the border. A nearer first point is then computed.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from .half_branch import HalfBranch, Meshes, Piece, pack, piece_of, unpack
 if TYPE_CHECKING:
     from ..journal import Journal
 
-# a branch that has come to an end like this is followed again where its mesh is too coarse
+# statuses after which the mesh is tested: if it is too coarse the branch is followed again on a finer one
 UNFINISHED = (Status.RUNNING, Status.STEP_TOO_SMALL, Status.BORDER, Status.LEFT_INTERVAL, Status.CREEPING)
-ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
-SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
+ASTRAY = 0.5  # largest distance of a nearer first point from the expected parabola, relative to its distance along the tangent
+SHORTER = 0.125  # new step relative to one that jumped to another branch
 AGAIN = {
     Role.LEAP: SHORTER,
     Role.LANDING: 0.7,
-}  # parts of the steps that are traced again: those that end next to a meeting, and their successors, end elsewhere
-SHORTEST = 0.1  # part of a first step: where a mesh lags behind after shorter ones it is too coarse
+}  # new step relative to the one that is repeated; after a landing the new steps end elsewhere
+SHORTEST = 0.1  # least step on a mesh that lags behind, relative to the first step; shorter ones mean that the mesh is too coarse
 
 
 def trace_half(
@@ -47,24 +47,27 @@ def trace_half(
 ) -> HalfBranch:
     """Follow a branch from a point in the direction of its tangent until it ends.
 
-    A real branch ends at its first border, a virtual one where all margins are positive again; both end where they come
-    back to the fixed space of a symmetry. Special points are put between the points. Where a step has led to another
-    branch, it is traced again with shorter ones. Where a mesh is too coarse, the branch goes on on a finer one, if it is given and what
-    has been found so far can be read there; else the half ends, and says so.
+    A real branch ends at its first border, a virtual one where all margins are positive again; both end where they return
+    to the fixed space of a symmetry. Special points are inserted between the points. If a step has jumped to another
+    branch, it is traced again with shorter steps. If the mesh becomes too coarse, the branch continues on a finer one, provided that `meshes` are given
+    and the points so far can be transferred; else the half branch ends with the status COARSE.
 
     Parameters
     ----------
     detector : Detector
     start : Solved
+        First point.
     journal, key
-        Chunks and their events are asked for, and recorded, under ``key/number`` and ``key/number/events``.
+        Chunks and their events are recalled from, and recorded in, the journal as ``key/number`` and ``key/number/events``.
     real : bool
+        Whether the branch has positive margins.
     first_step : float, optional
     notice : callable, optional
         Called after each chunk with the number of points so far and the parameter value.
     origin : Solved, optional
-        The special point beside which the branch starts: it becomes the first point, and the segment between is looked at.
+        The special point beside which the branch starts: it becomes the first point, and the segment between is searched.
     meshes : Meshes, optional
+        Finer meshes of the problem.
     """
     engine, detector.parts = detector.engine, 0
     half = HalfBranch(detector, [piece_of(engine, start)])
@@ -113,13 +116,13 @@ def trace_half(
         elif events and events[-1].ends_branch:
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:
-            # the loop saw a negative margin that could not be located: keep what is certainly real
+            # the loop met a negative margin whose zero could not be located: drop the last point, which may be virtual
             count -= 1
         beside = bool(half.events) and half.events[-1][0] == len(half) - 2
         if engine.adaptive and len(half) > begun and not beside:
-            # on the mesh of what follows; what was found before lies on that of the point
+            # replace the last point by the same one on the mesh of the following points
             half.put(len(half) - 1, chunk.solved(0))
-        # the loop writes its next rows to the same place
+        # copied, as the loop reuses the array of rows
         spectrum = chunk.rows[:, : 2 * engine.m].copy()
         whole = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, scanned.smallest)
         here, total = 1, len(half)  # the first point is the last one of the chunk before
@@ -140,14 +143,14 @@ def trace_half(
 
 
 def _ended(half: HalfBranch, chunk: Chunk) -> HalfBranch:
-    """A half that ends where its mesh is too coarse."""
+    """Return the half branch with the points of the chunk, ended because its mesh is too coarse."""
     spectrum, margins = chunk.rows[:, : 2 * half.engine.m].copy(), half.engine.smallest_margin(chunk.rows)
     last = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins)
     return replace(half, pieces=[*half.pieces, last], status=Status.COARSE)
 
 
 def _repeats(engine: Engine, event: Located) -> bool:
-    """Whether a branch comes to solutions that only repeat shorter ones, and turns round there, on a mesh that cannot tell it."""
+    """Whether an event is a branch point at cycles that repeat a shorter one, on a mesh too coarse to show that the branch turns round there."""
     problem = engine.adaptive
     if problem is None or event.kind != "branch-point":
         return False
@@ -155,8 +158,15 @@ def _repeats(engine: Engine, event: Located) -> bool:
 
 
 def _coarse(engine: Engine, chunk: Chunk) -> tuple[bool, Retrace | None]:
-    """Whether the mesh has become too coarse on a chunk; else where it lags behind the solutions: from the last point before on it is
-    adapted again, with steps that are not longer."""
+    """Test the mesh of a chunk.
+
+    Returns
+    -------
+    coarse : bool
+        Whether the mesh is too coarse.
+    lag : Retrace or None
+        If the mesh lags behind the solutions: trace again from the last good point, where the mesh is adapted, with steps that are not longer.
+    """
     problem = engine.adaptive
     if problem is None or chunk.status not in UNFINISHED:
         return False, None
@@ -170,7 +180,7 @@ def _coarse(engine: Engine, chunk: Chunk) -> tuple[bool, Retrace | None]:
 
 
 def _step(engine: Engine, chunk: Chunk, i: int) -> float:
-    """Length of the step to a point of a chunk."""
+    """Return the length of the step to point i of a chunk."""
     change = chunk.points[i] - chunk.points[i - 1], float(chunk.values[i] - chunk.values[i - 1])
     return engine.norm(engine.join(*change))
 
@@ -179,7 +189,7 @@ def _step(engine: Engine, chunk: Chunk, i: int) -> float:
 def _opening(
     detector: Detector, origin: Solved, start: Solved, journal: Journal, key: str, real: bool
 ) -> tuple[HalfBranch, Solved]:
-    """From a special point to the first point of a branch that leaves it, and that point: a nearer one than `start` where that one leapt."""
+    """Return the opening as a half branch, and the first point: `start`, or a nearer one if `start` lies on another branch."""
     engine, known = detector.engine, journal.recall(key)
     if known is None:
         events, times = _looked_at(detector, origin, start, real)
@@ -196,7 +206,7 @@ def _opening(
 
 
 def _looked_at(detector: Detector, origin: Solved, start: Solved, real: bool) -> tuple[list[Located], int]:
-    """The special points of the opening, and how many times its end was brought nearer; not at all where that does not help."""
+    """Return the special points of the opening, and the number of times that its end was moved nearer; 0 if that does not help."""
     engine, whole = detector.engine, detector.beside(origin, start, real)
     events, times, point = whole, 0, start
     while events and events[-1].role is Role.LEAP:
@@ -209,9 +219,9 @@ def _looked_at(detector: Detector, origin: Solved, start: Solved, real: bool) ->
 
 
 def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
-    """A point of a branch that leaves a special point, nearer to that than a known one; None if none is found.
+    """Compute a point of a branch that leaves the special point `origin`, nearer to it than the known `point`; None if there is none.
 
-    The tangent of `origin` points along the branch; its bend is that of the parabola through both points.
+    The tangent of `origin` points along the branch; the guess lies on the parabola through both points.
     """
     z, direction = engine.join(origin.u, origin.p), origin.tangent
     gap = engine.join(point.u, point.p) - z
@@ -227,7 +237,10 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
 
 
 def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
-    """The first point of a branch that leaves a point with positive margins, brought so near that it has them, too, if it can be."""
+    """Move the first point of a leaving branch nearer to its origin until its margins are positive, if those of the origin are.
+
+    Returns the given point if that is not possible.
+    """
     if point is None or float(engine.smallest_margin(origin.row)) < engine.settings.inside:
         return point
     closer: Solved | None = point
@@ -239,10 +252,10 @@ def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved
 
 
 def from_border(half: HalfBranch, first: Solved) -> HalfBranch:
-    """A half that begins at a border beyond which its equations go on, without what is the border itself; its multipliers there are limits.
+    """Correct a half branch that begins at a border and continues with the same equations.
 
-    Where a stick or flight vanishes p is stationary, or another solution crosses; and where the equations are singular, what they
-    tell of the multipliers there is rounding.
+    Folds and branch points at the border itself are removed: where a stick or flight vanishes p is stationary, or another solution crosses. The
+    multipliers at the border are replaced by their one-sided limits, as the equations may be singular there.
     """
     engine = half.engine
     again = [
