@@ -6,6 +6,7 @@ import pytest
 import contvines as cv
 from orbits import DryFriction, Machine
 from orbits.symbols import cos
+from tests.orbits.declared.oscillators import oscillator
 from tools.pages.pages import page
 
 FREQUENCY, DRAG, GRIP = 1.3, 0.3, 1.5
@@ -51,3 +52,18 @@ def test_a_body_alone_is_followed_where_it_lies(place: float) -> None:
     assert abs(graph["ST1"].value - (0.3 - place)) < 1e-9
     assert graph["B1"].stable.all()
     assert (len(graph.branches) > 1) == (place == 0.0)
+
+
+@pytest.mark.parametrize("push", [0.0, 1e-10, 1e-6, -0.2])
+def test_a_motion_that_comes_back_shifted_is_no_orbit(push: float) -> None:
+    """A body that nothing holds moves on by 2 push in a unit of time."""
+    free = oscillator(
+        lambda s, phase, p, contact: cos(phase) - 0.5 * s.v + p.push,
+        parameters={"frequency": FREQUENCY, "push": 0.0},
+    )
+    still = free.orbit("")
+    problem = still.problem("push")
+    shifted = problem.orbit(still.seed(problem)[0] + [0.0, 0.0, 2.0 * push], push)
+    period = 2.0 * np.pi / FREQUENCY
+    left = period if abs(push) < 1e-9 else -2.0 * abs(push) * period
+    assert shifted.residual < 1e-11 and shifted.margin == pytest.approx(left, rel=1e-7)
