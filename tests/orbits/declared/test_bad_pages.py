@@ -101,11 +101,11 @@ def test_values_that_no_machine_can_have(sentence):
 def test_a_formula_that_is_no_number_is_named_with_its_line_and_the_state():
     def motion(s, phase, p, contact):
         push = p.forcing / s.x
-        return s.v, push
+        return s.v, push * contact.beyond
 
     sentence = "division by zero.*push = p.forcing / s.x.*x = 0, v = 0, phase = 0.*start elsewhere"
     with pytest.raises(SimulationError, match=sentence):
-        box(motion=motion).attractor()
+        box(motion=motion, contacts=[Switch("beyond", lambda s, phase, p: s.x - p.gap)]).attractor()
 
 
 def test_two_walls_part_with_two_parameters():

@@ -6,6 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 import contvines as cv
+from orbits.simulation import replay
 from orbits.symbols import cos
 from tests.orbits.declared.oscillators import RIGHT, oscillator
 
@@ -58,7 +59,7 @@ def test_what_simulation_meets_lies_on_its_branch(length, speed):
     orbit = atlas["B2"].orbit(1)
     most = size(orbit.parameters["frequency"])
     assert orbit.measure("max_x") == pytest.approx(most / METRES[length], rel=1e-9)
-    assert orbit.model.units["max_x"] == length
+    assert orbit.model.units["max_x"] == length and replay(orbit).error < 1e-9
     # it comes closest to the wall inside its flight
     kept = min(margin.value for margin in orbit.margins if margin.kind == "wall")
     assert kept == pytest.approx(GAP - most, rel=1e-8)

@@ -50,6 +50,7 @@ def test_stuck_response_slips_at_its_frequencies(excitation):
         params[1] = frequency
         found = stuck_response(params)
         assert abs(found.reserve) < 1e-9 * max(1.0, found.shaking)
+    assert COUPLED.changed(forcing=0.5, frequency=0.9, excitation=excitation).stuck_response().real
     # the lower one lies below the resonance of the joined masses, the next above it
     low, high = stuck_frequencies(params)[:2]
     assert low < 1 / np.sqrt(1.006) < high
