@@ -48,6 +48,7 @@ def test_basins_tell_them_apart_and_know_no_mirror_images():
         assert large[int(basins.index[i, k])] == (size(basins.x[k], basins.y[i], 7.0) > 4.0)
 
 
+@pytest.mark.slow
 def test_an_atlas_has_both_on_branches_of_their_own():
     atlas = cv.atlas(
         HARDENING, over="frequency", within=(6.0, 7.5), values=[6.71875, 7.2], starts=32, scan=0, depth=0

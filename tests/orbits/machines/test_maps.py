@@ -150,6 +150,7 @@ def agree(name, params, segment, u):
             np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "params", "segment"), CASES)
 def test_maps_and_all_their_derivatives(name, params, segment):
     agree(name, params, segment, nodes_of(name, segment, 2.9, 0.1))
