@@ -15,7 +15,7 @@ def map_of(excess, bend, middle):
         y = bend * (x[0] - middle) ** 2
         modulus = 1.0 + excess - y / (1.0 + y)
         c, s = modulus * np.cos(1.1), modulus * np.sin(1.1)
-        return np.array([x[0] + 0.3 * (1.0 - p - x[0] ** 2), c * x[1] - s * x[2], s * x[1] + c * x[2]])
+        return [x[0] + 0.3 * (1.0 - p - x[0] ** 2), c * x[1] - s * x[2], s * x[1] + c * x[2]]
 
     return cv.MapProblem(f, [0.6, 0.0, 0.0], 0.64)
 

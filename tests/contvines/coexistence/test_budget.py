@@ -13,7 +13,7 @@ pytestmark = pytest.mark.slow
 
 
 def logistic():
-    problem = cv.MapProblem(lambda x, r: r * x * (1.0 - x), [0.6], 2.6, parameter="r")
+    problem = cv.MapProblem(lambda x, r: r * x * (1.0 - x), [0.6], 2.6)
     return problem.population(box=[(0.01, 0.99)])
 
 
@@ -87,7 +87,7 @@ def test_the_price_of_integrated_flights_counts(whole, monkeypatch):
 
 def test_the_limit_at_which_branches_of_roots_wait_is_said():
     """The logistic map: zero and 1 - 1/r, of which doublings leave at r = 3 that are not followed."""
-    problem = cv.MapProblem(lambda x, p: [p * x[0] * (1 - x[0])], [0.5], 2.5, parameter="r")
+    problem = cv.MapProblem(lambda x, p: [p * x[0] * (1 - x[0])], [0.5], 2.5)
     graph = cv.atlas(problem, within=(2.4, 3.55), settings={"max_branches": 1})
     assert "stopped at max_branches = 1" in graph.message and not graph.complete
 

@@ -84,7 +84,7 @@ def test_the_look_says_what_a_diagram_lacks():
 
 def test_the_look_says_that_chaos_has_no_branch():
     """Of the Chebyshev map mu x (1 - x), mu = 4, every cycle is unstable; near it windows are narrower than what the look meets."""
-    logistic = cv.MapProblem(lambda x, mu: mu * x * (1 - x), [0.7], 3.98, parameter="mu")
+    logistic = cv.MapProblem(lambda x, mu: mu * x * (1 - x), [0.7], 3.98)
     graph = cv.diagram(logistic, within=(3.97, 4.0), depth=0)
     look(graph, logistic.population())
     told = missing_text(graph, "x.toml")

@@ -23,7 +23,7 @@ def test_a_parabola(slow):
     # x' = 2 x + 0.7 y^2, y' = slow y: x = K y^2 is invariant if K slow^2 = 2 K + 0.7
     bend = 0.7 / (slow * slow - 2.0)
     one, other = halves_of(
-        lambda u, p: np.array([p * u[0] + 0.7 * u[1] ** 2, slow * u[1]]), [0.0, 0.0], 2.0, (3.0, 2.0)
+        lambda u, p: [p * u[0] + 0.7 * u[1] ** 2, slow * u[1]], [0.0, 0.0], 2.0, (3.0, 2.0)
     )
     for half in (one, other):
         assert half.ended == "leaves"
@@ -34,7 +34,7 @@ def test_a_parabola(slow):
 
 def test_points_of_henons_manifold_fall_into_the_saddle():
     def henon(x, p):
-        return np.array([1.0 - p * x[0] ** 2 + x[1], 0.3 * x[0]])
+        return [1.0 - p * x[0] ** 2 + x[1], 0.3 * x[0]]
 
     x = (-0.7 + np.sqrt(0.49 + 5.6)) / 2.8
     for half in halves_of(henon, [0.63, 0.19], 1.4, (2.0, 2.0)):

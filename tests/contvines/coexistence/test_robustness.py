@@ -13,7 +13,7 @@ pytestmark = pytest.mark.slow
 
 def test_the_smallest_kick_of_a_map_is_the_distance_to_its_boundary():
     """Both states contract to 0 from |x| < 1/p, |y| < 2: x' = p x^2, y' = y^3 / 4."""
-    problem = cv.MapProblem(lambda u, p: np.array([p * u[0] ** 2, 0.25 * u[1] ** 3]), [0.0, 0.0], 1.0)
+    problem = cv.MapProblem(lambda u, p: [p * u[0] ** 2, 0.25 * u[1] ** 3], [0.0, 0.0], 1.0)
     well = cv.diagram(problem, within=(0.7, 1.5), depth=0)["B1"]
     for at in (1.1, 1.4):
         found = cv.robustness(well, at, starts=0)

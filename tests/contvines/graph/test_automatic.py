@@ -10,7 +10,7 @@ DOUBLINGS = [3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228, 3.5644072660954326, 3.
 
 
 def logistic(within, **options):
-    problem = cv.MapProblem(lambda x, r: r * x * (1 - x), [0.5], 2.5, parameter="r")
+    problem = cv.MapProblem(lambda x, r: r * x * (1 - x), [0.5], 2.5)
     return cv.diagram(problem, within=within, **options)
 
 
@@ -38,7 +38,7 @@ def test_labels_and_tangents_run_along_the_branch(start):
 def test_the_end_of_the_interval_is_met_exactly_and_nothing_changes_its_sign_there(end):
     """Of u = sin 3p + p^3/5, a branch without special points."""
     problem = cv.AlgebraicProblem(
-        lambda u, p: np.array([u[0] - np.sin(3 * p) - p**3 / 5, u[1] - u[0] * p]), [0.0, 0.0], 0.0
+        lambda u, p: [u[0] - np.sin(3 * p) - p**3 / 5, u[1] - u[0] * p], [0.0, 0.0], 0.0
     )
     graph = cv.diagram(problem, within=(-end, end))
     assert graph["B1"].range == (-end, end)

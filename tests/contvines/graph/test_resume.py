@@ -16,7 +16,7 @@ pytestmark = pytest.mark.slow
 
 def run(journal=None):
     """The logistic map's fixed point and its cascade, which begins at r = 3."""
-    problem = cv.MapProblem(lambda x, r: r * x * (1 - x), [0.6], 2.5, parameter="r")
+    problem = cv.MapProblem(lambda x, r: r * x * (1 - x), [0.6], 2.5)
     return cv.diagram(problem, within=(2.0, 3.56), depth=3, journal=journal)
 
 

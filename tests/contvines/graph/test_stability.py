@@ -32,7 +32,7 @@ def test_one_border_reached_from_two_branches():
 def test_a_sliver_between_a_fold_and_a_doubling_is_marked_or_told_of(width, at):
     """x' = x + p - x^2 turns at x = 0; y' = -(1 + x - width) y flips at x = width: stable between the two only, exactly."""
     problem = cv.MapProblem(
-        lambda z, p: np.array([z[0] + (p - at) - z[0] ** 2, -(1.0 + z[0] - width) * z[1]]),
+        lambda z, p: [z[0] + (p - at) - z[0] ** 2, -(1.0 + z[0] - width) * z[1]],
         [0.3, 0.0],
         at + 0.09,
     )
@@ -54,7 +54,7 @@ def test_a_flow_is_stable_left_of_the_axis_only(rate, stable):
     """u' = rate u at rest, and a conservative pair, whose eigenvalues are imaginary all along: nothing is attracted."""
     problem = cv.AlgebraicProblem(lambda u, p: rate * (u - p), [0.0], 0.0, spectrum="flow")
     assert bool(cv.diagram(problem, within=(-1.0, 1.0))["B1"].stable.all()) is stable
-    turning = cv.AlgebraicProblem(lambda u, p: np.array([u[1], p - u[0]]), [0.0, 0.0], 0.0, spectrum="flow")
+    turning = cv.AlgebraicProblem(lambda u, p: [u[1], p - u[0]], [0.0, 0.0], 0.0, spectrum="flow")
     assert not cv.diagram(turning, within=(-1.0, 1.0))["B1"].stable.any()
 
 

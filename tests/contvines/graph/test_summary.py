@@ -1,7 +1,5 @@
 """The summary of a graph's stable motions: against what the equations say."""
 
-import numpy as np
-
 import contvines as cv
 from contvines.graph.table import summary
 from orbits import Machine
@@ -10,7 +8,7 @@ from orbits.symbols import cos
 
 def test_a_logistic_map_is_summarised():
     """x' = a x (1 - x): the fixed point 1 - 1/a is stable from a = 1 to 3, the cycle of two from there to 1 + sqrt 6 = 3.449."""
-    problem = cv.MapProblem(lambda x, a: a * x * (1.0 - x), np.array([0.5]), 2.0)
+    problem = cv.MapProblem(lambda x, a: a * x * (1.0 - x), [0.5], 2.0)
     graph = cv.diagram(problem, within=(1.5, 3.5), depth=1)
     told = summary(graph, 100)
     assert "1.5..3" in told and "3..3.449" in told
@@ -20,7 +18,7 @@ def test_a_logistic_map_is_summarised():
 
 def test_an_atlas_in_brief_has_what_most_starts_reach():
     """Of the cubic map x' = a x - x^3, odd, all starts with |x| < 1 reach one of the two fixed points +-(a - 1)^(1/2), stable from a = 1 to 2."""
-    problem = cv.MapProblem(lambda x, a: a * x - x**3, np.array([0.5]), 1.5)
+    problem = cv.MapProblem(lambda x, a: a * x - x**3, [0.5], 1.5)
     population = problem.population(box=[(-0.9, 0.9)])
     atlas = cv.atlas(population, within=(1.2, 1.8), values=2, starts=10, scan=0, depth=0)
     told = summary(atlas, 100, brief=True).splitlines()

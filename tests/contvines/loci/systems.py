@@ -45,7 +45,7 @@ BAZYKIN_PLACE = 6.26576552895236307, 3.60155393683666477
 
 def henon(x, p):
     """x' = 1 + y - a x^2, y' = b x."""
-    return np.array([1 + x[1] - p.a * x[0] ** 2, p.b * x[0]])
+    return [1 + x[1] - p.a * x[0] ** 2, p.b * x[0]]
 
 
 def cusp(x, p):

@@ -15,7 +15,7 @@ from tests.contvines.studies import PAPER
 @pytest.fixture(scope="module")
 def graph():
     problem = cv.AlgebraicProblem(
-        lambda u, p: p.a + p.b * u - u**3, [-1.2], {"a": -0.5, "b": 1.0}, parameter="a", spectrum="flow"
+        lambda u, p: p.a + p.b * u - u**3, [-1.2], {"a": -0.5, "b": 1.0}, spectrum="flow"
     )
     return cv.diagram(problem, over="a", within=(-1.0, 1.0), depth=0)
 

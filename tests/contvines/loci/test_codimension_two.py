@@ -7,7 +7,7 @@ from tests.contvines.loci.systems import generalized_henon, generalized_henon_at
 
 
 def test_henon_loci_are_parabolas():
-    problem = cv.MapProblem(henon, [0.6, 0.2], {"a": 0.2, "b": 0.3}, parameter="a")
+    problem = cv.MapProblem(henon, [0.6, 0.2], {"a": 0.2, "b": 0.3})
     graph = cv.diagram(problem, over="a", within=(-0.5, 1.0), depth=1)
     # fold 4 a = -(1 - b)^2, doubling 4 a = 3 (1 - b)^2, second doubling 4 a = 4 (1 - b)^2 + (1 + b)^2
     closed = {"LP1": lambda b: -((1 - b) ** 2) / 4, "PD1": lambda b: 3 * (1 - b) ** 2 / 4}
@@ -19,9 +19,7 @@ def test_henon_loci_are_parabolas():
 
 def test_a_doubling_that_was_met_from_the_doubled_side():
     """The 2-cycle was born at 4 a = 3 (1 - b)^2; the diagram begins on it and does not go beyond."""
-    problem = cv.MapProblem(
-        henon, [[1.39, -0.07], [-0.22, 0.42]], {"a": 0.6, "b": 0.3}, parameter="a", cycle=2
-    )
+    problem = cv.MapProblem(henon, [[1.39, -0.07], [-0.22, 0.42]], {"a": 0.6, "b": 0.3}, cycle=2)
     graph = cv.diagram(problem, within=(0.3, 0.7), depth=0)
     assert graph["PD1"].multipliers.real.max() == pytest.approx(1.0, abs=1e-6)  # of both iterations
     a, b = cv.locus(graph["PD1"], over="b", within=(0.0, 0.6)).values.T

@@ -14,9 +14,9 @@ def test_two_folds_of_two_cells_cross_in_closed_form():
     c = 0.369
 
     def f(u, p):
-        return np.array([p.a + p.b * u[0] - u[0] ** 3, p.a - c + u[1] - u[1] ** 3])
+        return [p.a + p.b * u[0] - u[0] ** 3, p.a - c + u[1] - u[1] ** 3]
 
-    problem = cv.AlgebraicProblem(f, [-1.2, -1.3], {"a": -0.528, "b": 1.0}, parameter="a", spectrum="flow")
+    problem = cv.AlgebraicProblem(f, [-1.2, -1.3], {"a": -0.528, "b": 1.0}, spectrum="flow")
     graph = cv.diagram(problem, over="a", within=(-1.2, 1.2), depth=0)
     chart = cv.chart(graph, over="b", within=(0.6, 2.2), regions=False)
     second = c + 2 / 27**0.5

@@ -14,7 +14,6 @@ def test_the_side_on_which_the_margin_is_negative(slope, piece, turned):
         lambda u, p, sign: [u[0] - turned * (p.p - slope * p.q) - 0.0 * sign["u"]],
         [0.5 * piece],
         {"p": 0.5 * piece * turned, "q": 0.0},
-        parameter="p",
         switches={"u": lambda u, p: u[0]},
     )
     graph = cv.diagram(problem, over="p", within=(-1.0, 1.0), depth=0)
@@ -32,10 +31,9 @@ def test_the_side_on_which_the_margin_is_negative(slope, piece, turned):
 def test_a_map_whose_fixed_point_touches_a_switch():
     # x' = x / 2 + (q - (p - 1)^2) / 2 + y^2, y' = y / 3: fixed point (q - (p - 1)^2, 0), switch at x = p / 5
     problem = cv.MapProblem(
-        lambda x, p, sign: np.array([x[0] / 2 + (p.q - (p.p - 1) ** 2) / 2 + x[1] ** 2, x[1] / 3]),
+        lambda x, p, sign: [x[0] / 2 + (p.q - (p.p - 1) ** 2) / 2 + x[1] ** 2, x[1] / 3],
         [0.4, 0.0],
         {"p": 0.9, "q": 0.5},
-        parameter="p",
         switches={"s": lambda x, p: x[0] - p.p / 5},
     )
     graph = cv.diagram(problem, over="p", within=(-0.5, 2.5))

@@ -19,9 +19,7 @@ def test_burgers_map_where_a_pitchfork_meets_a_flip():
     def burgers(x, p):
         return [(1 - p.nu) * x[0] - x[1] ** 2, (1 + p.mu + x[0]) * x[1]]
 
-    problem = cv.MapProblem(
-        burgers, [0.0, 0.0], {"mu": -0.3, "nu": 0.9}, parameter="mu", mirror=[[1, 0], [0, -1]]
-    )
+    problem = cv.MapProblem(burgers, [0.0, 0.0], {"mu": -0.3, "nu": 0.9}, mirror=[[1, 0], [0, -1]])
     graph = cv.diagram(problem, within=(-0.5, 0.9), depth=2)
     chart = cv.chart(graph, over="nu", within=(0.1, 3.9), regions=False)
     lines = {"symmetry-breaking": (0, 0.0), "neimark-sacker": (0, 0.5), "period-doubling": (1, 2.0)}
@@ -40,7 +38,7 @@ def test_kopels_duopoly_where_branches_cross_and_do_not_fold():
     def kopel(u, p):
         return u * (1 - p.rho) + p.rho * p.mu * u[::-1] * (1 - u[::-1])
 
-    problem = cv.MapProblem(kopel, [0.5, 0.5], {"mu": 2.0, "rho": 0.9}, parameter="mu")
+    problem = cv.MapProblem(kopel, [0.5, 0.5], {"mu": 2.0, "rho": 0.9})
     graph = cv.diagram(problem, over="mu", within=(2.0, 3.4), depth=0)
     chart = cv.chart(graph, over="rho", within=(0.8, 1.2), depth=1, regions=False)
     assert all(locus.kind != "fold" for locus in chart.loci.values())
@@ -58,7 +56,7 @@ def test_truncated_normal_form_of_the_resonance_1_2():
         x, y = u
         return [y - x, p.beta1 * x + (p.beta2 - 1) * y + x**3 + x**2 * y]
 
-    problem = cv.MapProblem(normal_form, [0.0, 0.0], {"beta1": -2.0, "beta2": 0.0}, parameter="beta2")
+    problem = cv.MapProblem(normal_form, [0.0, 0.0], {"beta1": -2.0, "beta2": 0.0})
     graph = cv.diagram(problem, over="beta2", within=(-1.0, 6.0))
     branch_points = cv.locus(graph["BP1"], over="beta1", within=(-5.0, 3.0))
     assert set(branch_points.values[[0, -1], 1]) == {-5.0, 3.0}

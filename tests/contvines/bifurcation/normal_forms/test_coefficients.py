@@ -152,7 +152,7 @@ def test_flip_beside_other_doublings():
 
 def test_a_neimark_sacker_point_and_its_eigenvectors():
     """The delayed logistic map at r = 2, with multipliers exp(+-i pi/3): the coefficient by SymPy from Kuznetsov's formula, q of length one."""
-    problem = cv.MapProblem(lambda x, r: np.array([r * x[0] * (1.0 - x[1]), x[0]]), [0.3, 0.3], 1.5)
+    problem = cv.MapProblem(lambda x, r: [r * x[0] * (1.0 - x[1]), x[0]], [0.3, 0.3], 1.5)
     (point,) = cv.diagram(problem, within=(1.2, 2.4)).of_kind("neimark-sacker")
     assert point.frequency == pytest.approx(np.pi / 3.0, rel=1e-10)
     assert point.coefficient == pytest.approx(-1.0, abs=1e-9) and point.criticality == "supercritical"

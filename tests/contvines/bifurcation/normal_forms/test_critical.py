@@ -166,7 +166,6 @@ def test_a_double_zero_beside_a_pole():
         lambda u, p: bazykin(units * u, p) / units,
         BAZYKIN_PLACE / units,
         {"alpha": alpha, "delta": delta},
-        parameter="alpha",
         spectrum="flow",
     )
     found = normal_form("bogdanov-takens", forms_at(problem, problem.u0, alpha), [])

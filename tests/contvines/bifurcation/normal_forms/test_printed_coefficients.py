@@ -38,7 +38,7 @@ def test_extended_lorenz_84_as_printed():
     is printed where it was detected, two per cent off), l2 and omega at a generalized Hopf point; its l2 is that of the rate of w, ours is divided by omega."""
     start = [2.9787, -0.038683, 0.0582327, -0.0210529]
     problem = cv.AlgebraicProblem(
-        lambda u, p: lorenz(u, p.F, p.T), start, {"F": 3.0, "T": 0.04}, parameter="F", spectrum="flow"
+        lambda u, p: lorenz(u, p.F, p.T), start, {"F": 3.0, "T": 0.04}, spectrum="flow"
     )
     graph = cv.diagram(problem, over="F", within=(1.0, 3.0), depth=0)
     hopf, (fold,) = graph.of_kind("hopf"), graph.of_kind("fold")
