@@ -1,4 +1,4 @@
-"""First points of a branch that leaves a special point: of that branch, and on its side of a border, however near others are."""
+"""First points of a branch that leaves a special point: of that branch, and on its side of a border, however near others are; and every point once, in order."""
 
 import numpy as np
 import pytest
@@ -47,3 +47,16 @@ def test_a_branch_that_is_real_only_close_to_where_it_leaves(room, virtual):
     assert sorted(side.points[[0, -1], 0]) == pytest.approx([-room, room], rel=1e-6)
     assert graph["VG1"].value == pytest.approx(room**2, rel=1e-6)
     assert np.abs(side.points[:, 0]).max() <= room * (1.0 + 1e-6)
+
+
+def test_branch_points_closer_than_roundoff_beside_a_point_of_the_branch():
+    """Two pitchforks 6e-13 apart at p = 0, where the trivial branch has a point."""
+
+    def f(u, p):
+        return [u[0] * (p - u[0] ** 2 + 0.3 * u[1]), u[1] * (p - 5.683e-13 - u[1] ** 2)]
+
+    steps = {"first_step": 0.5, "max_step": 0.5, "max_branches": 1}
+    problem = cv.AlgebraicProblem(f, [0.0, 0.0], -0.5, spectrum="flow")
+    branch = cv.diagram(problem, within=(-0.5, 0.5), settings=steps)["B1"]
+    assert (np.diff(branch.values) >= -1e-12).all()
+    assert (branch.values == 0.5).sum() == 1
