@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Switch:
-    """One way from a branch to another.
+    """A connection of two branches at a special point.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Switch:
 
 
 class CurveOptions(TypedDict, total=False):
-    """Of :func:`contvines.plots.diagram.plot_diagram`: what is drawn of branches and special points."""
+    """Options of :func:`contvines.plots.diagram.plot_diagram` for branches and special points."""
 
     labels: bool | Sequence[str]
     ends: bool
@@ -73,7 +73,7 @@ class CurveOptions(TypedDict, total=False):
 
 
 class DiagramOptions(CurveOptions, PlotOptions, total=False):
-    """Of :func:`contvines.plots.diagram.plot_diagram`."""
+    """All options of :func:`contvines.plots.diagram.plot_diagram`."""
 
     xlim: tuple[float, float] | None
     ylim: tuple[float, float] | None
@@ -95,29 +95,29 @@ class Graph(Resumable):
     special : dict of SpecialPoint
         By label.
     switches : list of Switch
-        Which branches meet at which special point.
+        Connections of branches at special points.
     within : (float, float)
-        The interval of the parameter.
+        Interval of the parameter.
     settings : dict
         Settings of the run, ``depth`` and ``virtual`` included (JSON-able).
     finished : bool
-        False while the run that builds it goes on, or was interrupted.
+        False while the graph is computed, or after the computation was interrupted.
     message : str
-        How the run ended, in words.
+        State of the computation, as a sentence.
     start : str
-        A sentence where the start that was given is no solution: where the branch begins instead.
+        If the given start was no solution: a sentence that says where the branch begins instead. Else empty.
     complete : bool
-        False where branches were left waiting at ``max_branches`` or ``max_unknowns``, or the budget of an atlas was used up.
+        False if branches were left waiting at ``max_branches`` or ``max_unknowns``, or the budget of an atlas was used up.
     looked : bool
-        Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
+        Whether simulated starts were compared with the finished graph; the motions that it lacks are in `missing`.
     proofs : dict of dict
-        By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
+        By label: the proved claims (existence, real, stable, radius) and the certificate; see `prove`.
     attractors : list of Attractor
-        Of an atlas: motions on which simulated starts settled, with their shares and branches.
+        For an atlas: motions on which simulated starts settled, with their shares and branches.
     missing : list of Attractor
-        Motions that simulation has found and that lie on no branch, where the graph was `looked` at.
+        Motions found by simulation that lie on no branch; see `looked`.
     unresolved : list of Unresolved
-        Stretches of branches on which special points cannot be distinguished, with what is certain on both sides.
+        Stretches of branches on which special points cannot be distinguished, with the counts of multipliers on both sides.
     """
 
     parameter: str = "p"
@@ -162,11 +162,12 @@ class Graph(Resumable):
 
     @property
     def stopped(self) -> bool:
-        """Whether it is an atlas that has used up its budget."""
+        """Whether this is an atlas that has used up its budget."""
         return bool(self.settings.get("left"))
 
     @property
     def _cut(self) -> bool:
+        """Whether branches were left waiting at a limit, and more than one branch was wanted."""
         return not self.complete and self.settings.get("max_branches") != 1
 
     def _repr_html_(self) -> str:
@@ -180,16 +181,16 @@ class Graph(Resumable):
 
     @property
     def units(self) -> dict[str, str]:
-        """Units of the parameter and the measures by name; none where all are plain numbers."""
+        """Units of the parameter and the measures, by name; empty if there are none."""
         return next((dict(b.description.get("units") or {}) for b in self.branches.values()), {})
 
     @property
     def notation(self) -> dict[str, str]:
-        """Labels of axes by name of parameter or measure; none for equations of the user's own."""
+        """Axis labels of parameters and measures, by name; empty for user-defined equations."""
         return notation_of(*(branch.problem for branch in self.branches.values()))
 
     def on(self, branch: str) -> list[SpecialPoint]:
-        """The special points of a branch, in order along it.
+        """Return the special points of a branch, in order along it.
 
         Raises
         ------
@@ -201,7 +202,7 @@ class Graph(Resumable):
         return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
 
     def of_kind(self, kind: str) -> list[SpecialPoint]:
-        """The special points of a kind, in the order of their labels.
+        """Return the special points of a kind, in the order in which they were found.
 
         Raises
         ------
@@ -218,11 +219,11 @@ class Graph(Resumable):
 
     @property
     def own_kinds(self) -> dict[str, Kind]:
-        """The user's own kinds by name; of a graph from a file what they are called and drawn as."""
+        """User-defined kinds by name; for a graph from a file only with label, text and marker."""
         return {look["name"]: Kind(**look) for look in self.settings.get("kinds", [])}
 
     def kind(self, name: str) -> Kind:
-        """The kind of this name, built in or the user's own: its label, text and mark."""
+        """Return the kind of this name, built-in or user-defined: its label, text and marker."""
         return kind_named(name, self.own_kinds)
 
     def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
@@ -232,7 +233,13 @@ class Graph(Resumable):
         return prove(self, labels, **options)
 
     def attach(self, problem: Problem | Several) -> None:
-        """Give all branches and special points without a problem this one, or that of a flow (after loading a callable's graph)."""
+        """Set the problem of all branches and special points that have none, after loading a graph of Python callables.
+
+        Parameters
+        ----------
+        problem : Problem or Several
+            The problem, or an object with a problem for each branch, as a FlowProblem.
+        """
         own = {
             label: problem.problem_of(branch.description) if isinstance(problem, Several) else problem
             for label, branch in self.branches.items()
@@ -245,7 +252,7 @@ class Graph(Resumable):
                 point.problem = own[point.branch]
 
     def to_dict(self) -> dict[str, Any]:
-        """The graph as JSON-able dict: model, parameter, branches, special, switches."""
+        """Return the graph as a JSON-able dict: model, parameter, branches, special, switches, ..."""
         return {
             "model": self.model,
             "parameter": self.parameter,
@@ -264,18 +271,18 @@ class Graph(Resumable):
         }
 
     def _claims(self) -> dict[str, Any]:
-        """What is proved, without the certificates."""
+        """Return the proved claims, without the certificates."""
         return {
             label: {name: value for name, value in proof.items() if name != "certificate"}
             for label, proof in self.proofs.items()
         }
 
     def nodes(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Branches as nodes of a network: label and attributes."""
+        """Return the branches as nodes of a network: label and attributes."""
         return ((branch.label, branch.to_dict()) for branch in self.branches.values())
 
     def edges(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
-        """Links between branches as edges of a network: labels of both branches, and attributes."""
+        """Generate the switches as edges of a network: labels of both branches, and attributes."""
         for switch in self.switches:
             point = self.special[switch.point]
             yield (
@@ -291,7 +298,7 @@ class Graph(Resumable):
             )
 
     def network(self):
-        """The graph as networkx MultiDiGraph: nodes are branches, edges are switches.
+        """Return the graph as a networkx MultiDiGraph: nodes are branches, edges are switches.
 
         Raises
         ------
@@ -308,25 +315,25 @@ class Graph(Resumable):
         return network
 
     def merge(self, other: Graph) -> dict[str, str]:
-        """Add what another graph of the same problem has beside it; see :func:`contvines.coexistence.merging.merge`."""
+        """Add the branches and special points of another graph of the same problem; see :func:`contvines.coexistence.merging.merge`."""
         from ..coexistence.merging import merge
 
         return merge(self, other)
 
     def to_pandas(self):
-        """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
+        """Return all points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
         from ..export.frames import graph_frame
 
         return graph_frame(self)
 
     def points_to_pandas(self):
-        """The special points as a data frame; see :func:`contvines.export.frames.points_frame`."""
+        """Return the special points as a data frame; see :func:`contvines.export.frames.points_frame`."""
         from ..export.frames import points_frame
 
         return points_frame(self)
 
     def to_xarray(self):
-        """All points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
+        """Return all points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
         from ..export.frames import graph_dataset
 
         return graph_dataset(self)
@@ -337,32 +344,32 @@ class Graph(Resumable):
         Parameters
         ----------
         path : str or Path
-            Of ``"auto"`` the name that b.NAME, s.NAME and d.NAME share.
+            For ``"auto"`` the common NAME of the files b.NAME, s.NAME and d.NAME.
         to : {"csv", "json", "graphml", "mat", "latex", "auto", "xpp"}, optional
-            By default what the ending of `path` says.
+            Format; by default from the ending of `path`.
 
         Returns
         -------
         Path
-            The file that was written.
+            The written file.
 
         Raises
         ------
         ValueError
-            If there is no such format, or the place cannot be written.
+            If there is no such format, or the file cannot be written.
         """
         from ..export import export
 
         return export(self, to, path)
 
     def plot(self, x: str | None = None, y: str | None = None, **options: Unpack[DiagramOptions]) -> Figure:
-        """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
+        """Draw the bifurcation diagram as a matplotlib figure; see :func:`contvines.plots.diagram.plot_diagram`."""
         from ..plots.diagram import plot_diagram
 
         return plot_diagram(self, x=x, y=y, **options)
 
     def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
-        """The graph as (kind, key, content), as files keep it."""
+        """Generate the graph's entries of a file as (kind, key, content)."""
         from .persistence import graph_entries
 
         return graph_entries(self)
@@ -373,7 +380,7 @@ class Graph(Resumable):
         Raises
         ------
         ValueError
-            If the place cannot be written, or holds a file that is not ours.
+            If the file cannot be written, or exists and is no .vines file.
         """
         from pathlib import Path
 

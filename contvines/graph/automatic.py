@@ -1,4 +1,4 @@
-"""The automatic diagram: trace, switch, cross, until nothing new is found."""
+"""The automatic diagram: trace branches, switch at special points and cross borders, until nothing new is found."""
 
 from __future__ import annotations
 
@@ -37,24 +37,25 @@ def diagram(
     kinds: Sequence[Kind] | None = None,
     interrupt: OnInterrupt = "raise",
 ) -> Graph:
-    """All branches connected to a solution: traced, switched, each listed once.
+    """Compute all branches that are connected to a solution; each is listed once.
 
     Parameters
     ----------
     seed : orbit, SpecialPoint or Problem
-        An object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, a special point of another graph or of a locus, or a problem with ``u0`` and ``p0``.
+        The start: an object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, a special point of another graph or of a locus, or a problem
+        with ``u0`` and ``p0``.
     over : str, optional
-        Name of the continuation parameter; may be left out for a problem that has its own, and where there is one parameter only.
+        Name of the continuation parameter; not needed for a problem with its own, or with only one parameter.
     within : (float, float)
         Interval of the parameter.
     depth : int
-        How many switches deep. Crossing a border where the branch goes on with another word is not a switch.
+        Largest number of switches between the first branch and any other. Crossing a border where the branch continues with another word is no switch.
     virtual : bool
         Follow branches beyond a border, too (marked real=False).
     user_functions : mapping, optional
         name -> callable (u, p) -> float, or (measure, value); their zeros become special points of kind "user".
     journal : Journal, optional
-        What it remembers is not computed again; see :class:`contvines.MemoryJournal`.
+        Store of results; recorded ones are not computed again. See :class:`contvines.MemoryJournal`.
     progress : callable or bool, optional
         Called with a ``Progress`` (``message`` and counts) after each chunk and each branch. By default a line on a terminal or in a notebook;
         False for none.
@@ -62,12 +63,12 @@ def diagram(
     stop : mapping, optional
         Like ``user_functions``; branches end at their zeros.
     bounds : mapping, optional
-        name of a measure (``"u0"``, ``"norm"``, an output of your own) -> (low, high), either may be None; branches end there.
+        name of a measure (``"u0"``, ``"norm"``, a user-defined output) -> (low, high), either may be None; branches end at these values.
     kinds : sequence of Kind, optional
-        What is looked for: ``[*contvines.KINDS, yours]``; the built-in kinds if it is left out.
+        Kinds of special points to find: ``[*contvines.KINDS, yours]``; by default the built-in kinds.
     interrupt : "raise" or "return"
-        What Ctrl-C does: raise :class:`contvines.Interrupted`, whose ``graph`` holds all that is done, or return that graph.
-        ``contvines.resume(graph)`` goes on.
+        Effect of Ctrl-C: raise :class:`contvines.Interrupted`, whose ``graph`` has all results so far, or return that graph.
+        ``contvines.resume(graph)`` continues.
 
     Returns
     -------
@@ -76,7 +77,7 @@ def diagram(
     Raises
     ------
     ValueError
-        If the interval, a setting, a kind or the start will not do; the sentence says why.
+        If the interval, a setting, a kind or the start is invalid; the message gives the reason.
     Interrupted
         On Ctrl-C.
     """
@@ -127,7 +128,7 @@ def diagram(
 
 
 def _ever_a_number(run: Run, kind: Kind) -> bool:
-    """Whether a user's test is a number in the middle of any branch."""
+    """Whether a user-defined test is a finite number in the middle of any branch."""
     for branch in run.graph.branches.values():
         detector = run.detector(branch.attached)
         i = len(branch) // 2
@@ -151,12 +152,12 @@ def new_run(
     limits: Limits = NO_LIMITS,
     kinds: Sequence[Kind] | None = None,
 ) -> Run:
-    """A run with an empty graph.
+    """Return a run with an empty graph; parameters as for :func:`diagram`.
 
     Raises
     ------
     ValueError
-        If the interval, the depth or a setting will not do.
+        If the interval, the depth or a setting is invalid.
     """
     if not (isinstance(depth, int) and depth >= 0):
         raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
@@ -197,21 +198,25 @@ def switch(
     ----------
     graph : Graph
     label : str
-        A special point; its problem must be attached.
+        Label of a special point; its problem must be attached.
     depth : int
-        How many more switches deep to go on from the new branches.
+        Largest number of further switches from the new branches.
     user_functions, journal, progress, settings, stop, bounds, kinds
-        As for :func:`diagram`; the settings of the graph, and its bounds, are the default.
+        As for :func:`diagram`; the settings and bounds of the graph are the default.
 
     Returns
     -------
     list of str
-        Labels of the new branches; empty where nothing leaves or everything is known already: a warning says why.
+        Labels of the new branches. Empty if no branch leaves or all are known already; a warning gives the reason.
 
     Raises
     ------
-    TypeError, KeyError, ValueError
-        If it is no label, there is no such special point, or it has no problem.
+    TypeError
+        If `label` is no text.
+    KeyError
+        If the graph has no such special point.
+    ValueError
+        If the special point has no problem.
     """
     if not isinstance(label, str):
         name = getattr(label, "label", None)
@@ -238,7 +243,7 @@ def switch(
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)
     work(run)
-    if finished:  # more of an unfinished graph is still to come
+    if finished:  # an unfinished graph stays unfinished
         finish(run)
     new = [name for name in graph.branches if name not in before]
     if not new:

@@ -1,4 +1,4 @@
-"""Building an automatic diagram, branch by branch. Deterministic, so that a run with a journal catches up with itself."""
+"""Build an automatic diagram, branch by branch. The order is deterministic, so that a repeated run with a journal finds all recorded results."""
 
 from __future__ import annotations
 
@@ -30,21 +30,30 @@ from .schedule_branches import SWITCHING, leave
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
+DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # statuses by which a branch may end at its first point
 BEYOND = (
     0.1 * MARGIN
-)  # a branch whose margins are less all along is none, though they are no less than what counts as rounding
+)  # a real branch whose smallest margins are all below this (negative) number is rounding, and is dropped
 
-OFF = 0.7  # first steps between a special point at which a diagram is begun and its first point
+OFF = 0.7  # distance of the first point from a special point at which a diagram is started, in first steps
 
 
 def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) -> None:
-    """Put the start into the queue; its branch counts as one that so many others lie before.
+    """Solve for the start of a diagram and queue its branch.
+
+    Parameters
+    ----------
+    run : Run
+    problem : Problem
+    u, p
+        Guess of the start.
+    depth : int
+        Number of switches that count as used already.
 
     Raises
     ------
     ValueError
-        If it does not converge, lies outside the interval, or has a negative margin and ``virtual`` is off.
+        If the start does not converge, lies outside the interval, or has a negative margin and ``virtual`` is off.
     """
     engine = run.engine(problem)
     start = solve_start(engine, u, p)
@@ -63,7 +72,7 @@ def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) ->
 
 
 def adopt(run: Run) -> None:
-    """Continue the register of a graph that has branches already."""
+    """Register the branches that the run's graph has already."""
     for branch in run.graph.branches.values():
         if branch.problem is not None:
             run.register.add(branch, run.engine(branch.problem), {i for i, _ in branch.marks})
@@ -71,7 +80,10 @@ def adopt(run: Run) -> None:
 
 
 def work(run: Run) -> None:
-    """Work until the queue is empty, or, after one branch, the run is over. The graph is not finished by that: an atlas adds further roots; see `finish`."""
+    """Trace queued branches until the queue is empty, a limit is reached, or `run.over()`.
+
+    The graph is not marked as finished, as an atlas adds further starts; see `finish`.
+    """
     graph, before = run.graph, len(run.graph.branches)
     graph.finished = False
     with listening():
@@ -86,7 +98,7 @@ def work(run: Run) -> None:
             tie_borders(run)
             crossed = {switch.point for switch in graph.switches}
             for point in graph.special.values():
-                # its solutions beyond were looked for, and came to nothing one by one
+                # solutions beyond this border were found, but all were rejected
                 untold = point.kind in BORDERS and point.real and not point.remarks
                 if untold and point.label not in crossed and point.problem is not None:
                     tell_dead_end(run, point)
@@ -98,7 +110,7 @@ def work(run: Run) -> None:
 
 
 def finish(run: Run) -> None:
-    """Declare the graph finished and keep it: called once, by whoever has begun the run, after its last step."""
+    """Mark the graph as finished and store it; called once, at the end of the run."""
     graph = run.graph
     graph.finished = True
     if graph.complete:
@@ -109,7 +121,7 @@ def finish(run: Run) -> None:
 
 
 def limit_reached(run: Run) -> str:
-    """The setting that ends the automatic diagram here; empty where none does."""
+    """Return the name of the setting whose limit is reached; empty if none is."""
     branches = run.graph.branches.values()
     if len(branches) >= run.settings.max_branches:
         return "max_branches"
@@ -117,7 +129,7 @@ def limit_reached(run: Run) -> str:
 
 
 def leave_waiting(run: Run) -> None:
-    """End a graph at its limit: its message counts what waits, and special points name why it is not followed."""
+    """End a graph at its limit: set its message, and remarks at the special points that waiting branches leave."""
     limit, graph = limit_reached(run), run.graph
     most = getattr(run.settings, limit)
     graph.complete = False
@@ -125,19 +137,19 @@ def leave_waiting(run: Run) -> None:
         f"stopped at {limit} = {most} with {len(run.queue)} branches waiting: "
         f"the graph is not complete; raise {limit}, or lower depth"
     )
-    if most > 1:  # of a single branch nobody expects others
+    if most > 1:  # with max_branches = 1 the user expects no others
         tell_waiting(run, f"{limit} = {most}")
 
 
 def tell_waiting(run: Run, why: str) -> None:
-    """Let special points say why branches that leave them are left waiting."""
+    """Add a remark to each special point that a waiting branch leaves: the reason why it is not followed."""
     for pending in run.queue:
         if pending.point is not None and not pending.reached:
             run.remark(pending.point, f"a branch that leaves here is not followed: {why}")
 
 
 def trace_pending(run: Run, pending: Pending) -> None:
-    """Trace a branch unless it is known, and queue what leaves it."""
+    """Trace a pending branch unless it is known, and queue the branches that leave it."""
     if pending.reached:
         return
     if pending.point is None:
@@ -149,16 +161,16 @@ def trace_pending(run: Run, pending: Pending) -> None:
 
 
 def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
-    """First point of a pending branch, and whether it is real; None if there is none to trace, or it is known."""
+    """Return the first point of a pending branch and whether it is real; None if there is no branch to trace, or it is known."""
     first = first_point(run, run.engine(pending.problem), pending)
-    # the virtual rest of a branch goes on in its own equations, though at the border it repeats a shorter solution
+    # the virtual continuation of a branch keeps its equations, even if it repeats a shorter solution at the border
     rest = pending.kind is Origin.REST and not pending.real
     shorter = None if first is None or rest else pending.problem.root(first.u, first.p)
     if first is not None and shorter is not None:
         # a solution that only repeats a shorter one is followed as that one
         pending.problem, pending.u = shorter
         pending.p, pending.tangent = first.p, None
-        if pending.kind is Origin.REST:  # a virtual branch has come to the border of the shorter solutions
+        if pending.kind is Origin.REST:  # a virtual branch has reached the border of the shorter solutions
             pending.kind, pending.real = Origin.BORDER, None
         elif pending.kind is Origin.SWITCH:
             pending.kind = Origin.ROOT
@@ -174,7 +186,7 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
     if not real and pending.kind is Origin.BORDER:
-        return None  # an algebraic solution beyond the border that no machine follows: nothing was crossed
+        return None  # a virtual solution beyond the border: no crossing
     if not real and not run.virtual:
         if pending.point is not None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
@@ -195,7 +207,7 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
 
 
 def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
-    """Trace a branch that is not known, label its special points, and queue what leaves it."""
+    """Trace a new branch, label its special points, and queue the branches that leave it."""
     run.serial += 1
     label = run.new_label("B")
     half, endings, closed = followed(run, pending, first, real, label)
@@ -212,7 +224,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
         return
     if pending.kind is Origin.BORDER and of_no_length(run, half):
         run.numbers["B"] -= 1
-        return  # a solution of the border itself, once more: nothing was crossed
+        return  # the border's own solution once more: no crossing
     if pending.kind is Origin.BORDER and begins_elsewhere(run, half, pending):
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "a solution found nearby lies on a branch that does not begin here")
@@ -236,14 +248,14 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.tell(f"{label} finished", float(branch.values[-1]))
 
 
-# ------------------------------------------------------------------ both ways
+# ------------------------------------------------------------------ both directions
 def followed(
     run: Run, pending: Pending, first: Solved, real: bool, label: str
 ) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
-    """The whole branch in order, why it ends at either side, and whether it is closed.
+    """Follow a branch in both directions; return it in order, its two endings, and whether it is closed.
 
-    Where what was found on a coarse mesh cannot be read on a finer one, that side of the branch is followed again from its start. What is known
-    of the pending branch is on the mesh of the result then.
+    A side whose points cannot be transferred to a finer mesh is followed again from its start. The pending branch is then changed to the mesh
+    of the result.
     """
     meshes = Meshes(run.detector(pending.problem), run.detector)
 
@@ -251,7 +263,7 @@ def followed(
         run.tell(f"{label}: {points} points", value)
 
     def halves(detector: Detector, first: Solved, known: Container[str]) -> dict[str, HalfBranch]:
-        """The sides of the first point but for those that are known; the first alone where that closes."""
+        """Follow the sides of the first point, except those known already; if the first side closes, only that one."""
         if pending.kind is Origin.START and first.tangent[-1] < 0.0:
             first = turned(first)
         origin, starts = None, {"ahead": first, "back": turned(first)}
@@ -273,7 +285,7 @@ def followed(
         return found
 
     def moved(detector: Detector, wanted: Detector, first: Solved, solve: bool = True) -> Solved | None:
-        """The first point on a finer mesh, and the pending branch, too; None, and all as it was, where the point cannot be solved there."""
+        """Transfer the first point and the pending branch to a finer mesh; None, without changes, if the point cannot be solved there."""
         begin = meshes.moved(detector, wanted, first, solve)
         if begin is not None:
             pending.problem, pending.u = wanted.engine.problem, begin.u
@@ -284,6 +296,7 @@ def followed(
         return begin
 
     def again(detector: Detector, wanted: Detector, first: Solved) -> Solved | None:
+        """Transfer the first point to a finer mesh, under a new number of the journal's entries."""
         begin = moved(detector, wanted, first)
         run.serial += begin is not None
         return begin
@@ -295,13 +308,14 @@ def followed(
 
 
 def turned(point: Solved) -> Solved:
-    """A point of the branch in the other direction."""
+    """Return a point with its tangent reversed."""
     return point._replace(tangent=-point.tangent, sign=-point.sign)
 
 
 def _in_order(
     pending: Pending, halves: dict[str, HalfBranch], first: Solved
 ) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
+    """Join the half branches in order; return the branch, its endings, and whether it is closed."""
     ahead, back = halves.get("ahead"), halves.get("back")
     reason = Reason.GOES_ON if pending.kind is Origin.REST else Reason.LEAVES
     begins = Ending(reason, pending.p, pending.point, pending.source)
@@ -320,6 +334,7 @@ def _in_order(
 
 
 def _ending(half: HalfBranch) -> Ending:
+    """Return the ending of a half branch, with the problem's explanation if it died."""
     found = Ending.of(half.status, half.end)
     if half.status in DEAD:
         problem, stuck = half.engine.problem, half.status == Status.STEP_TOO_SMALL
@@ -329,7 +344,7 @@ def _ending(half: HalfBranch) -> Ending:
 
 # ------------------------------------------------------------------ first points
 def of_no_length(run: Run, half: HalfBranch) -> bool:
-    """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
+    """Whether a branch has no length but for rounding, or is real by rounding only."""
     nowhere = run.settings.rounding
     whole, unit = half.joined(), run.unit(half.end)
     length = whole.values.max() - whole.values.min()
@@ -344,7 +359,7 @@ def of_no_length(run: Run, half: HalfBranch) -> bool:
 
 
 def begins_elsewhere(run: Run, half: HalfBranch, pending: Pending) -> bool:
-    """Whether a branch looked for beyond a border ends at other borders, both ways: it was only passing by."""
+    """Whether a branch found beyond a border ends at other borders in both directions, so that it does not begin at this one."""
     ends = {i: e for i, e in half.events if i in (0, len(half) - 1) and e.kind in BORDERS}
     return len(ends) == 2 and not any(
         is_border(run, half.engine.problem, e, str(pending.point)) for e in ends.values()
@@ -352,7 +367,7 @@ def begins_elsewhere(run: Run, half: HalfBranch, pending: Pending) -> bool:
 
 
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
-    """The first regular point of a pending branch, or None."""
+    """Compute the first regular point of a pending branch; None, with a remark at its special point, if there is none inside the interval."""
     if pending.kind is Origin.SWITCH:
         _bring_near(engine, pending)
         first = pending.ahead
@@ -369,12 +384,12 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
         if first is not None:
             step, side = 0.0, True if pending.kind is Origin.BORDER else None
             if pending.kind is Origin.ROOT and pending.tangent is None:
-                # off the point where the known branch ends, or it would be taken for that branch, but not past a border
+                # move off the point where the known branch ends, or the new branch is mistaken for it; but not past a border
                 step = run.settings.amplitude
                 margin = float(engine.smallest_margin(first.row))
                 side = margin >= MARGIN if abs(margin) > run.settings.inside else None
             elif at_special_point(run, engine, first):
-                # it would else lie on neither of the two halves; nor is it to be the second point of one
+                # move off a special point, or it is detected on neither half; by less than a step, so that it differs from the second point
                 step = OFF * run.settings.first_step
             if step > 0.0:
                 first = off(engine, first, step, side)
@@ -384,19 +399,19 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
 
 
 def at_special_point(run: Run, engine: Engine, first: Solved) -> bool:
-    """Whether a branch is begun at a fold, at a branch point or where a multiplier passes the circle."""
+    """Whether a start is a fold, a branch point or a point where a multiplier crosses the circle."""
     if abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
         return True
 
     def on_circle(point: Solved | None) -> bool:
         return point is not None and bool((np.abs(sizes_by_sort(engine, point.row)) <= LOCATING.past).any())
 
-    step = run.settings.first_step  # of a conservative system multipliers are on the circle all along
+    step = run.settings.first_step  # in conservative systems multipliers are on the circle at all points
     return on_circle(first) and not any(on_circle(beside(engine, first, side)) for side in (step, -step))
 
 
 def _bring_near(engine: Engine, pending: Pending) -> None:
-    """Bring the first points of a departure so near that they are on this side of a border."""
+    """Move the first points of a departure so near to the special point that they are not behind a border."""
     origin, sides = pending.origin, (pending.ahead, pending.back)
     if origin is None:
         return
@@ -408,7 +423,10 @@ def _bring_near(engine: Engine, pending: Pending) -> None:
 
 
 def room(engine: Engine, border: Solved, step: float) -> float | None:
-    """A first step from a border that ends where the branch is real, if the usual one does not: it may be real in a short window only."""
+    """Return a shorter first step from a border that ends at a real point, if the usual step does not; else None.
+
+    The branch may be real in a short window only.
+    """
     for length in (step, 0.1 * step, 0.01 * step, 0.001 * step):
         found = beside(engine, border, length)
         if found is not None and float(engine.smallest_margin(found.row)) >= MARGIN:
@@ -417,7 +435,10 @@ def room(engine: Engine, border: Solved, step: float) -> float | None:
 
 
 def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
-    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part."""
+    """Return a point of the same branch at a small distance, ahead if possible; real or virtual as `real` says, if not None.
+
+    Returns the given point if there is none.
+    """
     for length in (step, 0.1 * step, 0.01 * step):
         for side in (length, -length):
             found = beside(engine, point, side)
@@ -429,6 +450,6 @@ def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved
 
 
 def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
-    """A point of the same branch at a small distance, if it lies in the interval."""
+    """Return the point of the same branch at a small distance; None if it lies outside the interval."""
     found = engine.beside(point, step)
     return found if found is not None and engine.lower <= found.p <= engine.upper else None

@@ -1,6 +1,6 @@
-"""What a graph holds beside branches, special points and switches: attractors that simulation has met, proofs, and stretches that are not resolved.
+"""Further contents of a graph: attractors found by simulation, proofs, and unresolved stretches.
 
-A stretch of a branch is not resolved where its two ends do not agree with the special points found between them.
+A stretch of a branch is unresolved if its two ends disagree with the special points found between them.
 """
 
 from __future__ import annotations
@@ -20,31 +20,34 @@ if TYPE_CHECKING:
     from ..branches import Branch
 
 STABLE = {True: ", stable", False: ", unstable", None: ""}
-MOST = 10  # stretches of one branch that are listed
+MOST = 10  # largest number of unresolved stretches of one branch in a list
 
 
 @dataclass
 class Attractor:
-    """One attractor at one value.
+    """An attractor at one parameter value.
 
     Attributes
     ----------
     value : float
+        Parameter value.
     word : str
+        Word of the motion; empty if it has none.
     periods : int
+        Number of forcing periods after which it recurs.
     kind : str
         ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow``, ``escaped``, ``stopped`` or
         ``impossible`` (the start lies inside a wall).
     branch : str or None
         Label of the branch on which it lies.
     share : float
-        Of the starts that reach it or its mirror image.
+        Share of the starts that reach it or its mirror image.
     mirror_share : float
-        Of the starts that reach the image other than the one found first.
+        Share of the starts that reach the mirror image of the motion found first.
     starts : int
-        How many were simulated at this value; 0 where another motion was followed here past the end of its stability, so that it has no share.
+        Number of starts simulated at this value. 0 if another motion was followed here past the end of its stability; there is no share then.
     exponent, error : float
-        Largest Lyapunov exponent per period and its standard error, where it does not recur.
+        Largest Lyapunov exponent per period and its standard error, if the motion does not recur.
     """
 
     value: float
@@ -60,16 +63,16 @@ class Attractor:
 
     @property
     def name(self) -> str:
-        """Name that is shown: its word, or what kind of motion has none."""
+        """Displayed name: the word, or without one the kind of motion."""
         return called(self.word, self.kind)
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry in the JSON of a graph."""
+        """Return the entry in the JSON of a graph."""
         return asdict(self)
 
 
 def sentences(stretches: Sequence[Unresolved], parameter: str) -> list[str]:
-    """For people: each stretch; of branches with many the first ones, and how many more there are."""
+    """Return a sentence for each stretch; for branches with many, the first ones and the number of the others."""
     lines, seen = list[str](), Counter[str]()
     for stretch in stretches:
         seen[stretch.branch] += 1
@@ -87,7 +90,7 @@ def sentences(stretches: Sequence[Unresolved], parameter: str) -> list[str]:
 
 @dataclass(frozen=True)
 class Unresolved:
-    """What is certain on both sides of a stretch that is not halved any more.
+    """An unresolved stretch of a branch, with the counts of multipliers on both sides.
 
     Attributes
     ----------
@@ -96,15 +99,16 @@ class Unresolved:
     low, high : float
         Parameter values of the two sides, in increasing order.
     index : int
-        Of the point of the branch that lies within.
+        Index of the branch's point inside the stretch.
     reason : str
-        "multipliers": their numbers past the circle change by more than the points between say; "determinant": its sign changes without
-        a branch point, as where the two sides lie on different branches; "neighbours": two special points are one as far as they are known;
-        "parts": one of the first two, of a stretch that may be long: it was not searched as closely as others, for `Settings.parts` were spent.
+        * "multipliers": the numbers of multipliers outside the circle change by more than the points found between explain.
+        * "determinant": the sign of the determinant changes without a branch point, for example because the two sides lie on different branches.
+        * "neighbours": two special points are equal within their errors.
+        * "parts": one of the first two, on a stretch that may be long, which was not searched further because `Settings.parts` was reached.
     before, after : (int, int, int)
-        Numbers of multipliers past +1, past -1, and of complex pairs past the circle on the two sides, in the branch's order.
+        Numbers of multipliers past +1, past -1, and of complex pairs outside the circle on the two sides, in the branch's order.
     points : tuple of str
-        Labels of special points there.
+        Labels of the special points of "neighbours".
     """
 
     branch: str
@@ -117,7 +121,7 @@ class Unresolved:
     points: tuple[str, ...] = ()
 
     def sentence(self, parameter: str) -> str:
-        """For people."""
+        """Return the stretch as a sentence."""
         width = number_text(self.high - self.low, 2)
         where = (
             f"{self.branch} at {parameter} = {number_text(0.5 * (self.low + self.high), 12)}, {width} wide"
@@ -135,18 +139,18 @@ class Unresolved:
         return f"unresolved on {where}: " + " before, ".join(counts) + " behind"
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry in the JSON of a graph."""
+        """Return the entry in the JSON of a graph."""
         return {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(self).items()}
 
     @classmethod
     def from_dict(cls, content: dict[str, Any]) -> Unresolved:
-        """What `to_dict` made."""
+        """Rebuild a stretch from the result of `to_dict`."""
         found: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in content.items()}
         return cls(**found)
 
 
 class Proved(Protocol):
-    """A graph with the claims and certificates of what is proved, by label."""
+    """Protocol of a graph with proofs: claims and certificates by label."""
 
     @property
     def branches(self) -> Mapping[str, Branch]: ...
@@ -155,7 +159,7 @@ class Proved(Protocol):
 
 
 def proved_stretches(graph: Proved, label: str) -> list[tuple[list[int], dict[str, Any]]]:
-    """The proved stretches of a branch: the numbers of its points on each, and what is proved of them."""
+    """Return the proved stretches of a branch: indices of its points on each, and the claims."""
     branch, found = graph.branches[label], []
     for stretch in graph.proofs.get(label, {}).get("stretches", ()):
         if stretch["covered"] is not None and stretch["real"] is not None:
@@ -169,7 +173,7 @@ def proved_stretches(graph: Proved, label: str) -> list[tuple[list[int], dict[st
 
 
 def proof_text(graph: Proved, label: str) -> str:
-    """The proved stretches of a branch in words."""
+    """Return the proved stretches of a branch as text."""
     return ", ".join(
         f"{low:.6g}..{high:.6g} {'real' if about['real'] else 'virtual'}{STABLE[about['stable']]}"
         for _, about in proved_stretches(graph, label)
@@ -178,7 +182,7 @@ def proof_text(graph: Proved, label: str) -> str:
 
 
 def proof_mark(graph: Proved, label: str) -> str:
-    """How tables and pictures mark a label: "proved", "proved virtual" or nothing."""
+    """Return the mark of a label in tables and pictures: "proved", "proved virtual" or empty."""
     proof = graph.proofs.get(label)
     if not proof or not proof["existence"] or proof["real"] is None:
         return ""

@@ -1,10 +1,12 @@
-"""Identity: is this solution, branch or special point known? One room, one distance, one tolerance.
+"""Identity: decide whether a solution, branch or special point is known already.
 
 The distance of two solutions is that of their canonical forms (`Problem.canonical`): the largest difference of their entries, in units of
-the unknowns, relative to 1 + the largest entry; infinite where their keys differ. Two solutions are one up to ``Settings.same``. Where
-equations are singular (at bifurcations, at borders, where branches end) solutions are known to half their digits, so that the
-root of it counts. Values of the parameter are one up to ten times their stated errors and 1e-4 times that tolerance, in the parameter's unit, or, where no error
-is stated, up to a hundredth of it.
+the unknowns, relative to 1 + the largest entry; infinite if their keys differ.
+
+* Two solutions are the same if their distance is within ``Settings.same``. At points with singular equations (bifurcations, borders, ends of
+  branches) solutions have only half their digits, and the tolerance is the square root of it.
+* Two parameter values are the same if they differ by at most ten times their stated errors plus 1e-4 times ``Settings.same``, in the
+  parameter's unit; without a stated error, by a hundredth of ``Settings.same``.
 """
 
 from __future__ import annotations
@@ -26,16 +28,16 @@ from ..problems.protocol import Problem
 
 @dataclass(frozen=True)
 class Identity:
-    """When two values of the parameter, or two solutions, are one, in parts of `Settings.same`.
+    """Tolerances for equal parameter values and solutions, relative to `Settings.same`.
 
     Attributes
     ----------
     stated : float
-        Of values whose errors are stated; the errors come on top of it.
+        For values with stated errors, in addition to these.
     unstated : float
-        Of values of which none is stated.
+        For values without stated errors.
     exact : float
-        Of solutions to roundoff: those that differ by more are two, though they count as the same.
+        For solutions that are equal to rounding; solutions that differ by more may lie on two branches with a small angle.
     """
 
     stated: float = 1e-4
@@ -45,16 +47,16 @@ class Identity:
 
 IDENTITY = Identity()
 SAME = Settings().same
-ERRORS = 10.0  # times the stated errors
-FAR = 0.1  # length along two branches after which they are one
+ERRORS = 10.0  # safety factor on stated errors
+FAR = 0.1  # two branches that stay together over this length are the same
 
 Form = tuple[Hashable, np.ndarray]
 
 
 def distance(one: np.ndarray, other: np.ndarray, scale: np.ndarray | None = None) -> float:
-    """Largest difference of two canonical vectors, in units of a scale of the entries, relative to 1 + the largest entry of the second one.
+    """Return the largest difference of two canonical vectors, relative to 1 + the largest entry of the second one.
 
-    A vector that has more entries than there are unknowns, a whole cycle's, is in units of its own.
+    Both are first divided by `scale`, typical sizes of the entries, unless they have more entries than it (those of a whole cycle).
     """
     if one.shape != other.shape:
         return float("inf")
@@ -73,24 +75,24 @@ def same_vector(
 
 
 def same_form(one: Form, other: Form, scale: np.ndarray | None = None, tolerance: float = SAME) -> bool:
-    """Whether two canonical forms, as problems return them, are of one solution."""
+    """Whether two canonical forms belong to the same solution."""
     return one[0] == other[0] and same_vector(one[1], other[1], tolerance, scale)
 
 
 def singular(tolerance: float = SAME) -> float:
-    """The tolerance where equations are singular."""
+    """Return the tolerance for solutions at points with singular equations."""
     return float(np.sqrt(tolerance))
 
 
 class Place(NamedTuple):
-    """A parameter value, and how well it is known (0: not said)."""
+    """A parameter value and its error (0: not stated)."""
 
     value: float
     error: float
 
 
 def same_value(one: Place, other: Place, unit: float, tolerance: float = SAME) -> bool:
-    """Whether two parameter values may be one, as far as they are known; see the top."""
+    """Whether two parameter values are the same within their errors; see the top of the module."""
     stated = one.error > 0.0 and other.error > 0.0
     reach = (
         IDENTITY.stated * tolerance * unit + ERRORS * (one.error + other.error)
@@ -103,9 +105,10 @@ def same_value(one: Place, other: Place, unit: float, tolerance: float = SAME) -
 def may_be_one(
     problem: Problem, u: np.ndarray, p: float, point: SpecialPoint, tolerance: float = SAME
 ) -> bool:
-    """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
+    """Whether a solution may be the same motion as a border point with another word; different motions can meet borders at the same parameter value.
 
-    Only problems of one kind tell: those that can compare motions, and others where their forms have as many entries.
+    The motions are compared if both problems are of the same type; else the result is True. A problem may compare motions itself (`same_motion`);
+    canonical forms are compared otherwise, if they have equally many entries.
     """
     if type(point.attached) is not type(problem):
         return True
@@ -120,7 +123,7 @@ def may_be_one(
 
 
 def turns_at(engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
-    """Whether a fold is so close to a branch point that it is that point, where a side branch only turns."""
+    """Whether a fold coincides with the branch point (u, p), at which a side branch turns."""
     if u.shape != fold.u.shape:
         return False
     gap = engine.join(u - fold.u, p - fold.p)
@@ -130,7 +133,7 @@ def turns_at(engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
 
 
 class Known:
-    """A branch that is known, with its engine; what its solutions are is worked out when the first is looked for where it lies."""
+    """A known branch with its engine; the keys of its solutions are computed at first use."""
 
     def __init__(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
         self.branch, self.engine, self.special = branch, engine, special
@@ -139,32 +142,35 @@ class Known:
 
     @cached_property
     def keys(self) -> set[Hashable]:
-        """The key of its inner points, which one of them tells; where all are special points, and so may repeat shorter solutions, those of all points."""
+        """Keys of the branch's solutions: that of one ordinary inner point; if there is none, those of all points.
+
+        Special points may repeat shorter solutions, which have another key.
+        """
         branch, problem, count = self.branch, self.engine.problem, len(self.branch)
         inner = (i for i in range(max(count // 2, 1), count - 1) if i not in self.special)
         places = list(islice(inner, 1)) or range(count)
         return {problem.canonical(branch.points[i], float(branch.values[i]))[0] for i in places}
 
     def reaches(self, p: float) -> bool:
-        """Whether it passes a parameter value, or ends there."""
+        """Whether the branch passes a parameter value, or ends there."""
         around = self.engine.settings.same * (self.unit + abs(p))
         return self.low - around <= p <= self.high + around
 
 
 class Register:
-    """Known branches; a seed is compared only with branches that reach its parameter value, and have its key."""
+    """Known branches. A solution is compared only with branches that reach its parameter value and have its key."""
 
     def __init__(self) -> None:
         self.known: list[Known] = []
 
     def add(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
-        """Remember a branch; ``special`` are the indices of its special points."""
+        """Add a branch; ``special`` are the indices of its special points."""
         self.known.append(Known(branch, engine, special))
 
     def find(self, problem: Problem, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
-        """The known branch on which a solution lies, or None.
+        """Return the known branch on which a solution lies, or None.
 
-        Where a branch passes the parameter value it is interpolated, solved there and compared.
+        A branch that passes the parameter value is interpolated there, solved and compared. `real` selects real or virtual branches; None both.
         """
         near = [known for known in self.known if real in (None, known.branch.real) and known.reaches(p)]
         if not near:
@@ -177,7 +183,7 @@ class Register:
             limits = {True: engine.settings.same, False: engine.settings.near}
             if any(gap <= limits[solved] for gap, solved in _crossings(branch, engine, form, p, 0.1)):
                 return branch
-            place = Place(p, 0.0)  # it may be an end point of the branch, where the parameter is not passed
+            place = Place(p, 0.0)  # it may be an end point of the branch
             for i in () if branch.closed else (0, -1):
                 at = Place(float(branch.values[i]), 0.0)
                 if same_value(at, place, engine.parameter_unit(p), engine.settings.same) and is_end(
@@ -190,9 +196,10 @@ class Register:
 def _crossings(
     branch: Branch, engine: Engine, form: Form, p: float, far: float = np.inf
 ) -> Iterator[tuple[float, bool]]:
-    """Distances of a solution, in its canonical form, from those of a branch that passes its parameter value, and whether these were solved for.
+    """Generate (distance, solved) for each crossing of a branch with a parameter value: the distance of its solution from a given one.
 
-    Else they are those of the interpolated ones, of which those farther away than `far` are passed over.
+    The branch is interpolated, and solved from there. If that fails, the interpolated solution is used and `solved` is False. Crossings whose
+    interpolated solutions are farther away than `far` are skipped.
     """
     (key, vector), gaps = form, branch.values - p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
@@ -211,23 +218,25 @@ def _crossings(
 
 
 def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solved) -> bool:
-    """Whether a branch that begins on a known one, within what counts as the same, is another one: it may leave at a small angle.
+    """Whether a branch whose first point equals a point of a known branch, within `Settings.same`, is a different branch that leaves at a small angle.
 
-    It is followed in steps of twice the length until it is away from the known one, or far along it. Solutions of x (x - 1) (p - 3 x) = 0 with
-    another unknown that is hundreds of times as large leave x = 0 so.
+    It is followed with steps that double until it is away from the known branch, or far along it. Example: solutions of x (x - 1) (p - 3 x) = 0
+    that leave x = 0, beside another unknown that is hundreds of times as large.
 
     Parameters
     ----------
     branch : Branch
-        The known one.
+        The known branch.
     known : Engine
-        Its own: the same solutions may be written with other unknowns there, half a cycle's instead of the whole one's.
+        Its engine. It may have other unknowns for the same solutions: of half a cycle instead of the whole one.
     engine : Engine
-        Of the branch that begins.
+        Engine of the new branch.
     first : Solved
+        First point of the new branch.
     """
 
     def away(point: Solved) -> float:
+        """Return the distance of a point from the known branch."""
         form = engine.problem.canonical(point.u, point.p)
         return min(
             (gap for gap, solved in _crossings(branch, known, form, point.p) if solved), default=np.inf
@@ -252,13 +261,13 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
 
 
 def is_end(branch: Branch, engine: Engine, i: int, form: Form) -> bool:
-    """Whether a solution, in its canonical form, is point i of a branch, an end of it."""
+    """Whether a solution, given as its canonical form, is point i of a branch, one of its ends."""
     here = engine.problem.canonical(branch.points[i], float(branch.values[i]))
     return same_form(here, form, engine.scale, singular(engine.settings.same))
 
 
 def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
-    """u at parameter value p on the cubic between points i and i + 1."""
+    """Return u at parameter value p on the cubic Hermite interpolation between points i and i + 1."""
     za, zb = (engine.join(branch.points[j], branch.values[j]) for j in (i, i + 1))
     chord = engine.norm(zb - za)
 
