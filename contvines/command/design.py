@@ -146,7 +146,7 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     assumed : names of what the study does not say
         An assumed half-width is named above the figure.
     """
-    from ..plots.figures import new_figure, settle, styled, thin_ticks
+    from ..shared.figures import new_figure, settle, styled, thin_ticks
 
     mu0, b0 = float(design.friction), float(design.cavity)
     mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)

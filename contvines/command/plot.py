@@ -170,7 +170,7 @@ def compared(
 ) -> Figure:
     """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
     from ..plots.diagram import draw_diagram, plot_diagram
-    from ..plots.figures import drawing
+    from ..shared.figures import drawing
 
     if not kinds:
         return plot_diagram(graph, x, y, **options)

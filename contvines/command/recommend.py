@@ -145,8 +145,8 @@ def _target(text: str, study: Study) -> float:
 
 def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
     """Both panels, one above the other in a narrow picture; where nothing was chosen the first alone."""
-    from ..plots.figures import new_figure, settle, styled, thin_ticks
     from ..plots.legends import NARROW
+    from ..shared.figures import new_figure, settle, styled, thin_ticks
 
     with styled():
         figure = new_figure(figsize=size or SIZE)

@@ -300,9 +300,9 @@ def _shows_response(graph: Graph, y: str | None) -> bool:
 
 def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
     """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
-    from ..plots.figures import styled
-    from ..plots.legends import draw_legend
+    from ..plots.legends import place_legend
     from ..plots.sweep import draw_bands
+    from ..shared.figures import styled
     from ..survey.completion import simulated
     from .compose import population
 
@@ -313,4 +313,4 @@ def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
     draw_bands(axes, [band for band in met if band[1] < band[3]], SIMULATED)
     if met and axes.get_legend() is not None:
         with styled():
-            draw_legend(axes, [], "best", False)
+            place_legend(axes, (), "best", False)

@@ -14,10 +14,10 @@ from ..continuation.settings import hinting
 from ..graph import CurveOptions, Graph
 from ..graph.contents import Attractor
 from ..graph.table import told_apart
+from ..shared.figures import Size, Style, fit, narrower, panels, settle
 from .basins import COLORS
 from .diagram import draw_diagram
-from .figures import Size, Style, fit, narrower, panels, settle
-from .legends import NARROW, draw_legend, place_legend
+from .legends import NARROW, place_legend
 from .style import HATCHES, axis_label
 
 MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one
@@ -71,13 +71,12 @@ def plot_atlas(
         if small:
             lower.set_ylabel("share")
         # a high figure has both keys; they stand below one another where there is no room beside the panels
-        handles = lower.get_legend_handles_labels()[0]
         if own and not small and (narrower(lower, NARROW) or legend == "below"):
-            place_legend(lower, [*picture.handles(), *handles], legend, own, remarks=picture.remarks)
+            place_legend(lower, picture.handles(), legend, own, remarks=picture.remarks)
         else:
-            place_legend(lower, handles, legend, own, usual="beside")  # first: it narrows both panels
+            place_legend(lower, (), legend, own, usual="beside")  # first: it narrows both panels
             if not small:
-                draw_legend(upper, picture.handles(), legend, own, picture.remarks)
+                place_legend(upper, picture.handles(), legend, own, remarks=picture.remarks)
         if own:
             fit(figure, frozen=True)
         settle(figure)
@@ -93,7 +92,11 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     met = [a for a in graph.attractors if a.starts] or graph.attractors
     values = np.array(sorted({a.value for a in met}))
     low, high = graph.within
-    group, starts = _grouped(met, values)
+    starts = np.array([max(next(a.starts for a in met if a.value == v), 1) for v in values], dtype=float)
+    group = ((np.cumsum(starts) - starts) // starts.max()).astype(int)
+    group = np.unique(group, return_inverse=True)[1]
+    if group[-1] and starts[group == group[-1]].sum() < 0.5 * starts.max():
+        group[group == group[-1]] -= 1  # too few for a bar of their own
     last = np.flatnonzero(np.diff(group))
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
     weights = starts / np.bincount(group, weights=starts)[group]
@@ -132,18 +135,3 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
         bottoms += heights[key]
     axes.set(ylim=(0.0, 1.0), ylabel="share of starts")
     axes.grid(False)
-
-
-def _grouped(met: Sequence[Attractor], values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which bar each value belongs to, and how many starts it had, shape (n,) each."""
-    counts = {a.value: max(a.starts, 1) for a in met}
-    starts = np.array([counts[float(v)] for v in values], dtype=float)
-    group, bar, filled = np.zeros(len(values), dtype=int), 0, 0.0
-    for i, count in enumerate(starts):
-        if filled >= starts.max():
-            bar, filled = bar + 1, 0.0
-        group[i] = bar
-        filled += count
-    if bar and filled < 0.5 * starts.max():
-        group[group == bar] = bar - 1  # too few for a bar of their own
-    return group, starts

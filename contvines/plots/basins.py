@@ -12,8 +12,8 @@ from matplotlib.patches import Patch
 from ..coexistence.basins import Basins
 from ..continuation.settings import hinting
 from ..graph.table import told_apart
+from ..shared.figures import Size, Style, drawing
 from ..shared.numbers import figures
-from .figures import Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
 

@@ -16,15 +16,16 @@ from ..continuation.settings import hinting
 from ..graph.table import short_word
 from ..loci.chart import Chart
 from ..loci.locus import Locus
+from ..shared.figures import Size, Style, drawing, fit, settle
 from ..shared.motions import MODULATIONS
-from .figures import Size, Style, drawing, fit, settle
 from .labels import CELL, Ground, Label, grouped, place_labels
 from .legends import hold_legend, place_legend
 from .style import BORDERS, HATCHES, LOCI, axis_label, mark_of_locus
 
 HATCHED = "#d9d9d9"
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
-STROKE = 3.5  # points: how long and how far apart the strokes at a border are
+STROKE = 4.5  # points from one stroke at a border to the next
+CROSSED = 8  # cells of curves that a name may cover
 FITS = 0.88  # share of the height and width of a name that must lie within its region
 WIDTH = 14  # characters in a line of the name of a modulation
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
@@ -99,7 +100,7 @@ def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
         # a few on each locus, in parts of the axes' diagonal, for those who see no colours
         (line,) = axes.plot(*solid.T, markevery=(0.07, 0.23), **look)
     if border and locus.seed is not None and locus.beyond:
-        stroke = TickedStroke(spacing=STROKE, angle=-90 * locus.beyond, length=1.0, linewidth=0.6)
+        stroke = TickedStroke(spacing=STROKE, angle=-90 * locus.beyond, length=0.65, linewidth=0.6)
         axes.plot(*solid.T, color=color, zorder=2, path_effects=[stroke])
     handles.setdefault(mark.name, line)
 
@@ -145,10 +146,9 @@ def _name(axes: Axes, chart: Chart) -> None:
             text = axes.text(*region.at, "\n".join([*names, *more]), **look)
             size = FITS * np.asarray(text.get_window_extent().size)
             places = ground.free(size, inside)
+            places = places[ground.covered(np.hstack([places, places + size])) <= CROSSED]
             if len(places):
-                cost = np.hypot(*(places + 0.5 * size - middle).T)
-                cost += 10.0 * ground.covered(np.hstack([places, places + size]))
-                at = places[np.argmin(cost)] + 0.5 * size
+                at = places[np.argmin(np.hypot(*(places + 0.5 * size - middle).T))] + 0.5 * size
                 x, y = axes.transData.inverted().transform(at)
                 text.set_position((x, y))
                 break

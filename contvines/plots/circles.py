@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from ..circles.circle import Circles
 from ..continuation.settings import hinting
-from .figures import Size, Style, panels
+from ..shared.figures import Size, Style, panels
 from .legends import place_legend
 from .style import BLUE, axis_label
 
@@ -73,7 +73,7 @@ def plot_circles(
                 drawn[2].sharex(drawn[1])
                 drawn[1].tick_params(labelbottom=False)
             _sizes(drawn[1], drawn[2], circles, colors)
-            place_legend(drawn[1], None, legend, False)
+            place_legend(drawn[1], (), legend, False)
     return figure
 
 

@@ -17,16 +17,7 @@ MOST = 40  # points put between two neighbours, at most
 
 
 class Curve:
-    """A run of points of one branch as lines of a picture.
-
-    Parameters
-    ----------
-    branch : Branch
-    x, y : str
-        Measures.
-    first, last : int
-        Inclusive indices of the run.
-    """
+    """A run of points of one branch, its inclusive indices `first` to `last`, as lines of a picture with the measures x and y."""
 
     def __init__(self, branch: Branch, x: str, y: str, first: int, last: int) -> None:
         self.branch, self.x, self.y = branch, x, y
@@ -104,21 +95,16 @@ def between(
 def _strands(
     branch: Branch, x: str, y: str, u: np.ndarray, p: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    columns = [_columns(branch, name, u, p) for name in (x, y)]
-    count = max(c.shape[1] for c in columns)
-    xs, ys = (np.broadcast_to(c, (len(p), count)) for c in columns)
-    return [(xs[:, j], ys[:, j]) for j in range(count)]
-
-
-def _columns(branch: Branch, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """A measure of some solutions, shape (m, 1), or (m, n) where each point of an n-cycle has its own."""
-    if name == branch.parameter:
-        return np.asarray(p, dtype=float)[:, None]
-    if branch.problem is not None:
-        found = branch.problem.at_each_point(name, u, p)
-        if found is not None:
-            return np.asarray(found, dtype=float)
-    return np.asarray(branch.measure_of(name, u, p), dtype=float)[:, None]
+    """Both measures of some solutions: one line, or one for each point of a cycle."""
+    columns = []
+    for name in (x, y):
+        found = p[:, None] if name == branch.parameter else None
+        if found is None and branch.problem is not None:
+            found = branch.problem.at_each_point(name, u, p)
+        if found is None:
+            found = np.asarray(branch.measure_of(name, u, p))[:, None]
+        columns.append(np.asarray(found, dtype=float))
+    return list(zip(*(column.T for column in np.broadcast_arrays(*columns))))
 
 
 def _missing(axes: Axes, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:

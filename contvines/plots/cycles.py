@@ -13,7 +13,7 @@ from contvines.shared.animations import animated, check_animation, pictures
 
 from ..continuation.settings import hinting
 from ..flows.orbit import CycleOrbit
-from .figures import Size, Style, panels
+from ..shared.figures import Size, Style, panels
 from .style import STATE_COLORS, STATE_OF
 
 SAMPLES = 800
@@ -47,14 +47,13 @@ def plot_cycle(
     d = states.shape[1]
     if not (len(coordinates) == 2 and all(0 <= j < max(d, 2) for j in coordinates)):
         raise ValueError(f"coordinates = {coordinates!r} must be two of 0 to {d - 1}")
-    color = STATE_COLORS[STATE_OF[orbit.stable]]
-
-    beside = {"mosaic": "ab"}
-    size = figsize or (7.2, 3.2)
+    path, names = (times, states[:, 0]), ("time", "$x_0$")
+    if d > 1:
+        path, names = states[:, list(coordinates)].T, tuple(f"$x_{j}$" for j in coordinates)
+    size, beside = figsize or (7.2, 3.2), {"mosaic": "ab"}
     with panels(axes, (1,), "a cycle is drawn on", size, style, beside) as (figure, drawn):
-        drawn[0].plot(*_plane(times, states, coordinates), color=color)
-        across, up = (f"$x_{j}$" for j in coordinates)
-        drawn[0].set(xlabel="time" if d == 1 else across, ylabel="$x_0$" if d == 1 else up)
+        drawn[0].plot(*path, color=STATE_COLORS[STATE_OF[orbit.stable]])
+        drawn[0].set(xlabel=names[0], ylabel=names[1])
         for j in range(min(d, 4) if axes is None else 0):
             drawn[1].plot(times, states[:, j], label=f"$x_{j}$")
         if axes is None:
@@ -98,7 +97,7 @@ def animate_cycle(
     figure = plot_cycle(orbit, figsize=figsize, style=style, coordinates=coordinates)
     times = np.linspace(0.0, orbit.period, frames, endpoint=False)
     states = orbit(times)
-    places = _plane(times, states, coordinates)
+    places = (times, states[:, 0]) if states.shape[1] == 1 else states[:, list(coordinates)].T
     left, right = figure.axes[:2]
     (mark,) = left.plot([places[0][0]], [places[1][0]], "o", color="0.1", markersize=6)
     now = right.axvline(0.0, color="0.2", linewidth=1.0)
@@ -108,12 +107,3 @@ def animate_cycle(
         now.set_xdata([times[frame], times[frame]])
 
     return animated(figure, move, path, seconds, rate)
-
-
-def _plane(
-    times: np.ndarray, states: np.ndarray, coordinates: tuple[int, int]
-) -> tuple[np.ndarray, np.ndarray]:
-    """What the portrait has across and upright; of a single state its time and itself."""
-    if states.shape[1] == 1:
-        return times, states[:, 0]
-    return states[:, coordinates[0]], states[:, coordinates[1]]

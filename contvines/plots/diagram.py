@@ -14,7 +14,6 @@ from matplotlib.inset import InsetIndicator
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 
-from contvines.shared.figures import shrinking
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
@@ -23,10 +22,10 @@ from ..graph import Graph
 from ..graph.contents import proof_mark, proved_stretches
 from ..graph.stretches import default_measure, measure_at, measured, undrawn
 from ..graph.table import motion_name, told_apart
+from ..shared.figures import Size, Style, drawing, fit, pixels, root, settle, shrinking
 from .curves import Curve
-from .figures import Size, Style, drawing, fit, pixels, root, settle
-from .labels import Label, Region, add_inset, crowded_region, grouped, place_labels
-from .legends import draw_legend, hold_legend
+from .labels import Label, Region, add_inset, crowded_region, grouped, is_curve, place_labels
+from .legends import hold_legend, place_legend
 from .style import PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, Mark, axis_label, line_of, mark_of
 
 COLORS = ("branch", "word", "stability")
@@ -151,7 +150,7 @@ def draw_diagram(
     if limits[0] is not None:
         frame(axes, *limits)  # once more: curves between stored points are known now
     picture.seen()
-    draw_legend(axes, picture.handles(), legend, own, picture.remarks)
+    place_legend(axes, picture.handles(), legend, own, remarks=picture.remarks)
     if own:
         fit(root(axes), frozen=True)
     settle(root(axes))
@@ -193,7 +192,8 @@ def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float
         xy = np.asarray(line.get_xydata(), dtype=float)
         if not len(xy) or not line.get_transform().contains_branch(axes.transData):
             continue
-        steps = np.linspace(0.0, len(xy) - 1.0, 20 * len(xy) - 19)  # between points, too: near the edges
+        count = 20 if is_curve(line) else 1  # between points, too: near the edges
+        steps = np.arange(count * (len(xy) - 1) + 1) / count
         x, y = (np.interp(steps, np.arange(len(xy)), values) for values in xy.T)
         seen = (x >= left) & (x <= right) & np.isfinite(y) & (not log or y > 0.0)
         drawn.append(scale.transform(y[seen]))
@@ -216,19 +216,7 @@ def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float
 
 
 class Picture:
-    """One graph on some axes.
-
-    Parameters
-    ----------
-    axes : Axes
-    graph : Graph
-    x, y : str
-        Measures.
-    labels, words, color, name, ends, inset
-        As for :func:`contvines.plots.diagram.plot_diagram`.
-    kinds : collection of str, optional
-        Kinds of special points that get marks; without, all.
-    """
+    """One graph on some axes; options as for :func:`plot_diagram`, `kinds` of special points that get marks (None: all)."""
 
     def __init__(
         self, axes: Axes, graph: Graph, x: str, y: str, *, labels: bool | Sequence[str] = True, words: bool = False,
@@ -322,9 +310,8 @@ class Picture:
     def handles(self) -> list[Artist]:
         """What the legend shows, in order."""
         ranked = sorted(self.explained.values(), key=lambda entry: entry[0])
-        return [handle for _, handle in ranked] + [
-            _entry(remark, linestyle="none") for remark in self.remarks
-        ]
+        words = (_entry(remark, linestyle="none") for remark in self.remarks)
+        return [*(handle for _, handle in ranked), *words]
 
     def _explain(self, rank: int, label: str, **look: Any) -> None:
         self.explained.setdefault(label, (rank, _entry(label, **look)))
@@ -382,7 +369,7 @@ class Picture:
         chosen = None if isinstance(self.labels, bool) else list(self.labels)
         places = {kind: i for i, kind in enumerate(BY_NAME)}  # whose labels are named first
         wanted = [
-            Label(label.join(self.name), x, y, "black", places.get(kind, len(places)), chosen is not None)
+            Label(self._named(label), x, y, "black", places.get(kind, len(places)), chosen is not None)
             for label, kind, x, y in self.seen()
             if chosen is None or label in chosen
         ]
@@ -399,6 +386,9 @@ class Picture:
                 for found, (count, more) in ((wanted, POINTS), (names, NAMES))
             )
         self.written = place_labels(self.axes, [*wanted, *names], self._text())
+
+    def _named(self, label: str) -> str:
+        return f"{self.name[0]}{label}{self.name[1]}"
 
     def _text(self) -> float:
         """Size of the labels, in points."""
@@ -426,10 +416,9 @@ class Picture:
             total = np.concatenate([[0.0], np.cumsum(steps)])
             if total[-1] < 12 or (label in found and total[-1] <= found[label][0]):
                 continue
-            x, y = xy[
-                np.searchsorted(total, 0.5 * total[-1])
-            ].tolist()  # never at a gap: nothing is added there
-            text = motion_name(curve.branch.description) if self.words else label.join(self.name)
+            # never at a gap: nothing is added there
+            x, y = xy[np.searchsorted(total, 0.5 * total[-1])].tolist()
+            text = motion_name(curve.branch.description) if self.words else self._named(label)
             tint = "0.25" if self.color == "stability" else self.tint[label]
             found[label] = float(total[-1]), Label(text, x, y, tint, 0, chosen is not None, True)
         return [label for _, label in sorted(found.values(), key=lambda entry: -entry[0])]

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from ..coexistence.erosion import Erosion
 from ..continuation.settings import hinting
 from ..graph.table import short_word
-from .figures import Size, Style, drawing
+from ..shared.figures import Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
 

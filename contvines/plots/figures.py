@@ -5,49 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from contvines.shared.figures import (
-    Size,
-    Style,
-    drawing,
-    fit,
-    is_frozen,
-    new_figure,
-    panels,
-    root,
-    settle,
-    styled,
-    thin_ticks,
-)  # fmt: skip
+from contvines.shared.figures import is_frozen, styled
+from contvines.shared.figures import new_figure as new_figure
+from contvines.shared.figures import settle as settle
 from contvines.shared.files import refuse_place
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "Size",
-    "Style",
-    "drawing",
-    "fit",
-    "new_figure",
-    "panels",
-    "root",
-    "settle",
-    "styled",
-    "thin_ticks",
-]
-
 FORMATS = ("png", "pdf", "svg", "jpg", "eps")
-
-
-def pixels(axes: Axes) -> float:
-    """Pixels per point."""
-    return root(axes).dpi / 72.0
-
-
-def narrower(axes: Axes, inches: float) -> bool:
-    """Whether the figure of some axes is narrower than that."""
-    return root(axes).get_figwidth() < inches
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:

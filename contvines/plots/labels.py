@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from .figures import pixels
+from ..shared.figures import pixels
 
 Region = tuple[tuple[float, float], tuple[float, float]]
 """Limits of a part of the axes."""
@@ -34,29 +34,15 @@ CROWD = 9  # with more than so many further names at one place none of them says
 
 @dataclass(frozen=True)
 class Label:
-    """A text that belongs to a place.
-
-    Attributes
-    ----------
-    text : str
-    x, y : float
-        Data coordinates of what it names.
-    color : str
-    rank : int
-        Smaller ones are placed first; from labels at one place the first few are named.
-    kept : bool
-        Placed whatever it covers; else left out where no clean place is found.
-    near : bool
-        Left out rather than put far from its place (names of branches).
-    """
+    """A text that belongs to a place, x and y in data coordinates."""
 
     text: str
     x: float
     y: float
     color: str = "black"
-    rank: int = 0
-    kept: bool = False
-    near: bool = False
+    rank: int = 0  # smaller ones are placed first; from labels at one place the first few are named
+    kept: bool = False  # placed whatever it covers; else left out where no clean place is found
+    near: bool = False  # left out rather than put far from its place: names of branches
 
 
 class Ground:
@@ -97,21 +83,17 @@ class Ground:
         return s[x1, y1] - s[x0, y1] - s[x1, y0] + s[x0, y0]
 
     def crossed(self, lines: np.ndarray) -> np.ndarray:
-        """Sums of the weights along straight lines (n, 2 ends, 2), but for what the first ends lie on, shape (n,)."""
+        """Sums of the weights along straight lines (n, 2 ends, 2), but for the curves on which their first ends lie, shape (n,)."""
         count = int(np.abs(np.diff(lines, axis=1)).max() / CELL) + 2
         places = lines[:, :1] + np.linspace(0.0, 1.0, count)[:, None] * (lines[:, 1:] - lines[:, :1])
         cells = np.floor((places - self.origin) / CELL).astype(int)
         met = self.raster[tuple(np.clip(cells, 0, np.array(self.raster.shape) - 1).T)].T
-        return np.sum(met * (np.cumsum(met == 0.0, axis=1) > 2), axis=1)
+        return np.sum(met * ((np.cumsum(met == 0.0, axis=1) > 2) | (met >= TAKEN)), axis=1)
 
     def free(self, size: np.ndarray, inside: np.ndarray | None = None) -> np.ndarray:
         """Lower left corners of the free boxes of a size on the page, shape (n, 2), the lowest first.
 
-        Parameters
-        ----------
-        size : (float, float)
-        inside : bool array, optional
-            The cells of the raster on which they must lie; curves may pass there.
+        With `inside`, a bool for each cell, they must lie there, and curves may pass.
         """
         taken = self.raster > 0.0 if inside is None else (self.raster >= TAKEN) | ~inside
         s = np.pad(taken.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
@@ -134,10 +116,15 @@ def along(page: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(at, total, v) for v in page.T])
 
 
+def is_curve(line: Line2D) -> bool:
+    """Whether a line joins its points."""
+    return np.size(line.get_xdata()) > 1 and line.get_linestyle() not in ("None", "none", "")
+
+
 def on_page(line: Line2D) -> np.ndarray:
     """What a curve, or the marks of a line without one, take of the page, shape (n, 2)."""
     page = line.get_transform().transform(np.asarray(line.get_xydata(), dtype=float))
-    if len(page) > 1 and line.get_linestyle() not in ("None", "none", ""):
+    if is_curve(line):
         return along(page)
     half = 0.6 * line.get_markersize() * line.get_figure(root=True).dpi / 72.0  # type: ignore[union-attr]
     across = np.linspace(-half, half, int(2.0 * half / CELL) + 2)
@@ -147,15 +134,7 @@ def on_page(line: Line2D) -> np.ndarray:
 def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annotation]:
     """Write each label where it covers nothing: the cheapest of 16 places on each of a few circles about its anchor.
 
-    Parameters
-    ----------
-    axes : drawn on; its limits must be final.
-    labels : in any order; places outside the axes are ignored.
-    size : of the font, in points.
-
-    Returns
-    -------
-    list of Annotation
+    The limits of the axes must be final; `size` is that of the font, in points. Labels of places outside are ignored.
     """
     unit, ground = pixels(axes), Ground(axes)
     low, high = np.asarray(axes.bbox.get_points())
@@ -189,7 +168,8 @@ def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annot
         )
         ground.add_box(boxes[k] + GAP * unit * np.array([-1, 0, 1, 0]))
         if radii[k] >= LEADER:
-            ground.add(along([at, middles[k]]), TAKEN)
+            line = along([at, middles[k]])
+            ground.add(np.concatenate([line, line + [CELL, 0.0]]), TAKEN)  # so wide that none slips across
     return written
 
 
@@ -233,13 +213,7 @@ MOST_ZOOM = 400.0
 
 
 def crowded_region(axes: Axes, spots: np.ndarray) -> Region | None:
-    """Limits of the place where most marks hide one another; None where no place is crowded.
-
-    Parameters
-    ----------
-    axes : its limits must be final.
-    spots : float array (n, 2), data coordinates of the marks that can be seen.
-    """
+    """Limits of the place where most marks, `spots` (n, 2) in data coordinates, hide one another; None where no place is crowded."""
     if len(spots) < CROWDED:
         return None
     page = axes.transData.transform(spots)
@@ -261,16 +235,7 @@ def crowded_region(axes: Axes, spots: np.ndarray) -> Region | None:
 def add_inset(axes: Axes, region: Region, size: float) -> tuple[Axes, InsetIndicator] | None:
     """Empty axes with the limits of a region in the largest free rectangle; a frame and two lines say what they show.
 
-    Parameters
-    ----------
-    axes : Axes
-    region : limits of the inset; it stays free.
-    size : of the tick labels, in points.
-
-    Returns
-    -------
-    (Axes, InsetIndicator) or None
-        None where there is no room.
+    The tick labels have this size, in points. None where there is no room.
     """
     ground, frame, unit = Ground(axes), np.asarray(axes.bbox.size), pixels(axes)
     corners = axes.transData.transform(np.transpose(region))

@@ -9,44 +9,31 @@ from matplotlib.axes import Axes
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.legend import Legend
 
-from contvines.shared.figures import legend_below, settle
+from contvines.shared.figures import legend_below, narrower, root, settle
 from contvines.shared.near_names import did_you_mean
 
-from .figures import narrower, root
 from .labels import Ground
 
 NARROW = 5.0  # inches: in a narrower figure the legend stands below the axes
 PLACES = ("inside", "beside", "below")
 
 
-def draw_legend(
-    axes: Axes, handles: Sequence[Artist], where: bool | str, own: bool, remarks: Sequence[str] = ()
-) -> None:
-    """Write or renew the legend of axes: entries that stand there already, these, and what has a label on the axes; see `place_legend`."""
-    before = axes.get_legend()
-    pairs = [] if before is None else zip(before.get_texts(), before.legend_handles, strict=False)
-    known = {text.get_text(): handle for text, handle in pairs if handle is not None}
-    for handle in (*handles, *axes.get_legend_handles_labels()[0]):
-        known.setdefault(str(handle.get_label()), handle)
-    place_legend(axes, list(known.values()), where, own, remarks=remarks)
-
-
 def place_legend(
     axes: Axes,
-    handles: Sequence[Artist] | None,
+    handles: Sequence[Artist],
     where: bool | str,
     own: bool,
     *,
     usual: str = "inside",
     remarks: Sequence[str] = (),
 ) -> None:
-    """Write a legend where the user wants it, or where it squeezes and hides nothing.
+    """Write or renew the legend of axes where the user wants it, or where it squeezes and hides nothing.
 
     Parameters
     ----------
     axes : Axes
-    handles : list
-        Artists with labels; None: those of the axes.
+    handles : list of Artist
+        With labels, besides those that stand in the legend already and those on the axes; each label comes once.
     where : bool or str
         False: none. True: the usual place, but below in a narrow figure. "inside", "beside", "below", or a place of matplotlib's.
     own : bool
@@ -61,8 +48,12 @@ def place_legend(
     ValueError
         If `where` is no place.
     """
-    handles = axes.get_legend_handles_labels()[0] if handles is None else list(handles)
-    if where is False or not handles:
+    before = axes.get_legend()
+    pairs = [] if before is None else zip(before.get_texts(), before.legend_handles, strict=False)
+    entries = {text.get_text(): handle for text, handle in pairs if handle is not None}
+    for handle in (*handles, *axes.get_legend_handles_labels()[0]):
+        entries.setdefault(str(handle.get_label()), handle)
+    if where is False or not entries:
         return
     known = [*PLACES, *Legend.codes]
     if isinstance(where, str) and where not in known:
@@ -73,9 +64,10 @@ def place_legend(
     place = where if isinstance(where, str) else place
     if place == "below":
         axes.set_xlabel("\n".join([axes.get_xlabel(), *remarks]))
-        legend_below(axes, [entry for entry in handles if entry.get_label() not in remarks], own)
+        legend_below(axes, [handle for label, handle in entries.items() if label not in remarks], own)
         return
-    legend = axes.legend(handles=handles, handlelength=2.4, loc=Legend.codes.get(place, Legend.codes["best"]))
+    code = Legend.codes.get(place, Legend.codes["best"])
+    legend = axes.legend(handles=[*entries.values()], handlelength=2.4, loc=code)
     if place not in PLACES:
         return
     figure = root(axes)

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
-from .figures import Size, Style, drawing
+from ..shared.figures import Size, Style, drawing
 from .legends import place_legend
 from .style import BARE, BLUE, RED, axis_label
 
@@ -25,7 +25,6 @@ def plot_transient(
     hits: np.ndarray | None = None,
     *,
     axes: Axes | None = None,
-    legend: bool | str = True,
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
@@ -38,7 +37,7 @@ def plot_transient(
         logarithmic axis.
     hits : float array, optional
         Instants of impacts, ticks at the lower edge.
-    axes, legend, figsize, style
+    axes, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """
     (clock, second, time), *curves = series
@@ -61,7 +60,7 @@ def plot_transient(
         if name == "energy":
             axes.set(yscale="log", ylabel="energy / initial energy")
         axes.margins(x=0.0)
-        place_legend(axes, None, legend, own, usual="below")
+        place_legend(axes, (), True, own, usual="below")
     return figure
 
 
@@ -70,10 +69,7 @@ def plot_densities(
     frequencies: np.ndarray,
     unit: str,
     densities: Mapping[str, tuple[np.ndarray, str]],
-    *,
-    axes: Axes | None = None,
     figsize: Size = None,
-    style: Style = None,
 ) -> Figure:
     """Draw spectral densities of responses over the frequency, logarithmically.
 
@@ -84,14 +80,14 @@ def plot_densities(
         Of these.
     densities : mapping
         Name -> values (k,) and unit; "bare" and "tuned" are lines to compare with.
-    axes, figsize, style
-        As for `plot_transient`.
+    figsize : (float, float), optional
+        Inches.
     """
     looks: dict[str, dict[str, Any]] = {
         "bare": {**BESIDE, "label": "without absorber"},
         "tuned": {"color": RED, "linestyle": (0, (1, 1.6)), "label": "tuned absorber"},
     }
-    with drawing(axes, style, figsize) as (figure, axes, own):
+    with drawing(None, None, figsize) as (figure, axes, own):
         colors = iter([BLUE, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))
         for name, (values, _) in densities.items():
             label = "with absorber" if name == "oscillator" else name
@@ -100,7 +96,7 @@ def plot_densities(
         up = axis_label("density of the response", unit=units.pop() if len(units) == 1 else None)
         axes.set(yscale="log", xlabel=axis_label("frequency", unit=unit), ylabel=up)
         axes.margins(x=0.0)
-        place_legend(axes, None, True, own, usual="below")
+        place_legend(axes, (), True, own, usual="below")
     return figure
 
 
@@ -113,7 +109,6 @@ def plot_calibration(
     xlabel: str,
     ylabel: str,
     axes: Axes | None = None,
-    legend: bool | str = True,
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
@@ -128,7 +123,7 @@ def plot_calibration(
     heights : float array (n,), optional
         The measured response.
     xlabel, ylabel : str
-    axes, legend, figsize, style
+    axes, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """
     with drawing(axes, style, figsize) as (figure, axes, own):
@@ -140,5 +135,5 @@ def plot_calibration(
             axes.plot(places, heights + residuals, color=BLUE, label="with the estimate")
         axes.set(xlabel=xlabel, ylabel=ylabel)
         axes.ticklabel_format(axis="y", scilimits=PLAIN)
-        place_legend(axes, None, legend, own, usual="below")
+        place_legend(axes, (), True, own, usual="below")
     return figure

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ..branches import Branch
 from ..continuation.settings import hinting
 from ..problems.abilities import notation_of
-from .figures import Size, Style, panels, root
+from ..shared.figures import Size, Style, panels, root
 from .legends import place_legend
 from .style import BLUE, RED, axis_label
 
@@ -60,7 +60,7 @@ def plot_multipliers(
         _sizes(drawn[0], branch, spectrum, flow)
         drawn[0].set_xlabel(label)
         if spectrum.shape[1] > 1:
-            place_legend(drawn[0], None, legend, len(drawn) == 1 and axes is None)
+            place_legend(drawn[0], (), legend, len(drawn) == 1 and axes is None)
         if len(drawn) == 2:
             _plane(drawn[1], branch, spectrum, flow, label)
     return figure

@@ -12,7 +12,7 @@ from ..branches import Branch
 from ..continuation.settings import hinting
 from ..graph import Graph
 from ..graph.table import short_word
-from .figures import Size, Style, drawing, fit, settle
+from ..shared.figures import Size, Style, drawing, fit, settle
 from .labels import Ground
 
 COLUMNS = 6  # at most, side by side
@@ -51,7 +51,11 @@ def plot_network(
         size = 6.0 if compact else 8.0
         if compact:
             columns = int(min(COLUMNS, max(2, across / COMPACT)))
-            place = _places(_that_fit(layers, columns, up / ROW), columns)
+            fitting = [
+                n for n in range(len(layers) + 1) if _extent(_places(layers[:n], columns))[1] <= up / ROW
+            ]
+            few = layers[: fitting[-1]] or [one[: max(int(up / ROW), 1)] for one in layers[:1]]
+            place = _places(few, columns)
         boxes = {label: _box(axes, graph.branches[label], at, size, compact) for label, at in place.items()}
         if graph.branches:
             computed = any(branch.stable is not None for branch in graph.branches.values())
@@ -104,14 +108,6 @@ def _write(axes: Axes, text: str, ends: np.ndarray, bend: float, size: float, as
             (ground.covered(written.get_window_extent().extents)[0] > 0.0, len(covered), (x + aside, y))
         )
     written.set_position(min(covered)[2])
-
-
-def _that_fit(layers: list[list[str]], columns: int, rows: float) -> list[list[str]]:
-    """The first layers, as many as find room in so many rows; of a single one that does not, the first labels."""
-    for count in range(len(layers), 0, -1):
-        if _extent(_places(layers[:count], columns))[1] <= rows:
-            return layers[:count]
-    return [layers[0][: max(int(rows), 1)]] if layers else []
 
 
 def _pairs(graph: Graph) -> dict[tuple[str, str], tuple[list[str], bool]]:
@@ -188,9 +184,7 @@ def _caption(branch: Branch) -> str:
     word = short_word(about["word"] or about.get("name", ""), 18) if "word" in about else ""
     periods = about.get("periods")
     named = "  ".join([branch.label, *filter(None, [word, f"k={periods}" if periods else ""])])
-    ends = [f"{end:.4g}" for end in branch.range]
-    for digits in range(5, 17):  # as many as tell them apart
-        if ends[0] != ends[1]:
-            break
-        ends = [f"{end:.{digits}g}" for end in branch.range]
-    return f"{named}\n{branch.parameter} {' to '.join(ends if ends[0] != ends[1] else ends[:1])}"
+    low, high = branch.range
+    digits = next((d for d in range(4, 17) if f"{low:.{d}g}" != f"{high:.{d}g}"), 4)  # that tell them apart
+    span = " to ".join(dict.fromkeys(f"{end:.{digits}g}" for end in branch.range))
+    return f"{named}\n{branch.parameter} {span}"

@@ -9,17 +9,12 @@ from matplotlib.figure import Figure
 from contvines.shared.near_names import did_you_mean
 
 from ..problems.abilities import Drawable
-from .figures import Size, Style, drawing
+from ..shared.figures import Size, Style, drawing
 from .style import BLUE
 
 
 def plot_portrait(
-    orbit: object,
-    *,
-    axes: Axes | None = None,
-    figsize: Size = None,
-    style: Style = None,
-    **options: object,
+    orbit: object, *, axes: Axes | None = None, figsize: Size = None, style: Style = None, **options: object
 ) -> Figure:
     """Draw an orbit: its own `plot()` where it has one, else the points of a cycle or the entries of a vector.
 

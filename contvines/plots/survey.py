@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from ..continuation.settings import hinting
+from ..shared.figures import Size, Style, narrower, panels
 from ..survey.results import Survey
-from .figures import Size, Style, narrower, panels
 from .legends import NARROW, place_legend
 from .style import BLUE, RED, label_of
 
@@ -74,7 +74,7 @@ def plot_survey(
         else:
             _map(figure, drawn[0], survey, name, along)
         if along:
-            place_legend(drawn[0], None, legend, axes is None)
+            place_legend(drawn[0], (), legend, axes is None)
             counts = {"failed": survey.failed, "known in part": survey.partly}
             said = [
                 f"{count} of {len(survey.plan)} systems {what}" for what, count in counts.items() if count

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
 from ..graph import Graph
+from ..shared.figures import Size, Style, drawing, narrower
 from .diagram import draw_diagram
-from .figures import Size, Style, drawing, narrower
-from .legends import NARROW, draw_legend
+from .legends import NARROW, place_legend
 from .style import axis_label
 
 Dots = Sequence[tuple[float, float]]
@@ -82,7 +82,7 @@ def plot_sweep(
         if graph is not None:
             draw_diagram(axes, graph, parameter, measure, own, legend=legend)
         else:
-            draw_legend(axes, [], legend, own)
+            place_legend(axes, (), legend, own)
     return figure
 
 

@@ -117,6 +117,16 @@ def root(axes: Axes) -> Figure:
     return figure
 
 
+def pixels(axes: Axes) -> float:
+    """Pixels per point."""
+    return root(axes).dpi / 72.0
+
+
+def narrower(axes: Axes, inches: float) -> bool:
+    """Whether the figure of some axes is narrower than that."""
+    return root(axes).get_figwidth() < inches
+
+
 @contextmanager
 def drawing(axes: Axes | None, style: Style, figsize: Size = None) -> Iterator[tuple[Figure, Axes, bool]]:
     """Figure and axes to draw on in a style, and whether they are new: new ones are given their place at the end."""
