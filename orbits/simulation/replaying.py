@@ -1,9 +1,9 @@
-"""Replay: does the simulator, which knows no word, follow a claimed periodic orbit, and how far does it leave it?
+"""Replay: compare a claimed periodic orbit with an event-driven simulation, which uses neither its word nor its equations.
 
-Nothing here knows the equations that continuation solves, so it can check them. `replay` says all that a simulation tells of an orbit of a
-forced machine; its derivatives are central differences of the simulated return map, from one of the orbit's events to itself. `deviation` is
-one number for any orbit: by events where they are distinct, by positions at a border. There two events coincide or one has no strength, so
-that the event list of the simulation is a matter of rounding; the motion itself is not.
+`replay` compares an orbit of a forced machine with the simulation in all respects: events, nodes, multipliers (central differences of the
+simulated return map from one of the orbit's events to itself), and whether the simulation stays on the orbit. `deviation` is a single number
+for any orbit: the largest difference at the events, or, at a border, of the positions. At a border two events coincide or one has no
+strength, so that rounding decides which events the simulation lists; the motion itself hardly changes.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from orbits.settings import REPLAYING, SIMULATING
 from orbits.words import Word
 from orbits.words.alphabet import Watch
 
-LONGEST = 200_000.0  # forcing periods that are waited for
+LONGEST = 200_000.0  # longest simulation, in forcing periods, until a displaced start has returned
 BACKWARD = (
     -TWO_PI * np.finfo(float).eps ** 0.5
-)  # what vanishes at a border like a root has half of the digits: rounding of a flight's duration
-STRETCHES = 32  # at most so many starts
-POINTS = 400  # instants of a period at which positions are compared
+)  # smallest duration of a flight that may be zero: one that vanishes like a square root at a border has half of the digits
+STRETCHES = 32  # starts per period at most
+POINTS = 400  # instants per period at which positions are compared
 
 Known = Callable[[], tuple[np.ndarray, np.ndarray]]
 
@@ -45,18 +45,18 @@ class Replay:
         Largest difference between claimed and simulated nodes over one period, the return included; inf if
         the events differ.
     message : str
-        "" or a sentence that says where the simulation departs from the claim.
+        First difference between simulated and claimed events; "" if there is none.
     multipliers : ndarray of complex
         Eigenvalues of the simulated return map's central differences (empty if not asked for or not available).
     tracked : int
         Cycles for which the simulation, started on the orbit, stayed within `REPLAYING.loss` of it (0 if not asked for).
     expected : float
-        Cycles for which rounding errors allow that: ln(loss/1e-15)/ln|multiplier|, inf for a stable orbit.
+        Cycles until rounding errors have grown to `loss`: ln(loss/1e-15)/ln|multiplier|; inf for a stable orbit.
     returned : bool or None
-        Whether a start moved off a stable orbit comes back to it (None for others, or if not asked for).
+        Whether a start displaced from a stable orbit returns to it (None for others, or if not asked for).
     motion : float
-        Where the events differ: largest difference of the positions at the claimed nodes' phases over one
-        period. On a border events appear or vanish by rounding alone: the motion still agrees.
+        If the events differ: largest difference of the positions at the claimed nodes' phases over one
+        period. It is small at a border, where events appear or vanish by rounding.
     """
 
     error: float
@@ -74,7 +74,7 @@ class Replay:
 
 
 class Round(NamedTuple):
-    """A run from the first event of a cycle on: None where there is none; `message` is "" or says what went otherwise than listed."""
+    """Simulation from the first event of a cycle on (None if it cannot start); `message`: its first difference from the word, "" if none."""
 
     run: Trajectory | None
     message: str
@@ -83,8 +83,10 @@ class Round(NamedTuple):
 def go_round(
     simulator: Simulator, word: Word, node: np.ndarray, wanted: int, periods: float = math.inf
 ) -> Round:
-    """Start exactly at the first event of a cycle, of which `node` is the node, and run through `wanted` more events: 1 ... n-1, the return to
-    event 0, and so on. `periods` is the longest run."""
+    """Simulate from the first event of a cycle, with its `node`, through the next `wanted` events (1 ... n-1, then event 0 again, and so on).
+
+    `periods` limits the simulation, in forcing periods.
+    """
     try:
         simulator.begin(word, node)
         run = simulator.run(periods, wanted)
@@ -104,12 +106,12 @@ def go_round(
 
 # ---------------------------------------------------------------------- one number
 def deviation(orbit: Motion, known: Known) -> float:
-    """Largest deviation of the simulation over one period of an orbit; `known` tells its margins and multipliers, if that matters.
+    """Largest deviation of the simulation from an orbit over one period; inf if it follows another motion.
 
-    Times and states are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
-    unstable orbits positions are compared at many instants as well, stretch by stretch, and the smaller
-    deviation counts. Where rounding grows within a period until the events differ, though multipliers are small, each event is
-    reached from the one before. Infinite if the simulation does something else. Lengths and speeds count in units of the machine's own size.
+    Times and states are compared event by event. If these deviate, for an orbit at a border or with large multipliers, positions are
+    compared as well, at many instants and stretch by stretch, and the smaller deviation is returned. If the events differ although
+    no margin is small and no multiplier large (rounding grows within the period), each event is simulated from the one before.
+    Lengths and speeds are in units of the machine's own size. `known()` returns margins and multipliers; it is called only if they are needed.
     """
     if np.any(orbit.durations < BACKWARD):
         return math.inf
@@ -126,7 +128,7 @@ def deviation(orbit: Motion, known: Known) -> float:
 
 
 def by_events(orbit: Motion, first: int = 0, count: int | None = None) -> float:
-    """Largest difference of the times and states of so many events (all of a period) after one at which the simulation starts; infinite if they are others."""
+    """Largest difference of times and states over `count` events (default: one period) after event `first`, at which the simulation starts; inf if the events differ."""
     wanted = (first + 1 + np.arange(count or len(orbit.word))) % len(orbit.word)
     longest = 2.0 * float(orbit.durations.sum()) / TWO_PI + 1.0
     simulator, word = simulator_of(orbit.model, orbit.params), orbit.word.rotate(first)
@@ -142,8 +144,8 @@ def by_events(orbit: Motion, first: int = 0, count: int | None = None) -> float:
 def by_positions(orbit: Motion, known: Known) -> float:
     """Largest difference of the positions at many instants of a period.
 
-    The simulation is started at every definite event and followed to the next one: an impact of vanishing speed has
-    infinite derivatives, and a very unstable orbit large ones, so that rounding would grow out of bounds over a period.
+    The simulation is restarted at each definite event: an impact of vanishing speed has infinite derivatives, and a very
+    unstable orbit large ones, so that rounding would grow too much over a whole period.
     """
     n, model, flow = len(orbit.word), orbit.model, flow_of(orbit.model)
     motion, names = flow.sample(orbit, POINTS), flow.coordinates(model)
@@ -152,7 +154,7 @@ def by_positions(orbit: Motion, known: Known) -> float:
     clock = motion["phase"] if model.forced else motion["time"]
     clock = np.append(clock, clock + orbit.durations.sum() if n else clock)
     first = np.searchsorted(motion["segment"], np.arange(max(n, 1) + 1))
-    first = np.append(first[:-1], first + len(motion["segment"]))  # twice through the cycle
+    first = np.append(first[:-1], first + len(motion["segment"]))  # two rounds of the cycle
     places = _definite(orbit, known()[0]) if n else [0]
     simulator, worst = simulator_of(model, orbit.params), 0.0
     for place, end in zip(places, [*places[1:], places[0] + max(n, 1)]):
@@ -170,7 +172,7 @@ def by_positions(orbit: Motion, known: Known) -> float:
 
 
 def _positions(orbit: Motion) -> list[int]:
-    """The places of positions among the coordinates."""
+    """Indices of the positions among the coordinates."""
     return [entry - 1 for entry in flow_of(orbit.model).position_entries(orbit.model)]
 
 
@@ -182,7 +184,7 @@ def _apart(
     columns: list[int],
     most: int,
 ) -> float:
-    """Largest difference of the positions, shape (m, c), from those claimed so long (clock) after a beginning; infinite where it does not go on for so long."""
+    """Largest difference of simulated positions from the claimed ones, shape (m, c), at the clock times `since` after `begin`; inf if the simulation ends earlier."""
     try:
         begin()
         begun = simulator.time
@@ -194,7 +196,7 @@ def _apart(
 
 
 def _definite(orbit: Motion, margins: np.ndarray) -> list[int]:
-    """Events of some strength, between flights that are not short; all between such flights where every impact is soft."""
+    """Events with a speed well above zero between flights that are not short; if all impacts are slow, all events between such flights."""
     n, columns = len(orbit.word), orbit.word.alphabet.columns
     strong = np.resize(margins[columns.index(Watch.STRENGTH) :: len(columns)], n) > REPLAYING.definite
     long = np.minimum(orbit.durations, np.roll(orbit.durations, 1)) > REPLAYING.close
@@ -207,17 +209,17 @@ def _definite(orbit: Motion, margins: np.ndarray) -> list[int]:
     return places[:: -(-len(places) // STRETCHES)].tolist()
 
 
-# ---------------------------------------------------------------------- all that a simulation tells
+# ---------------------------------------------------------------------- comparison in all respects
 def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
-    """Replay an orbit of a forced machine: start exactly at its first node and compare events and nodes over one period.
+    """Simulate an orbit of a forced machine from its first node, and compare events and nodes over one period.
 
     Parameters
     ----------
     orbit : orbit-like
         With `model`, `params`, `periods`, `nodes` (shape (n, NODE)) and `word`: an `orbits.orbit.Orbit` or an `Attractor`.
     thorough : bool
-        Also take multipliers, follow the orbit for as long as they allow and, if it is stable, start off it and see
-        whether the motion comes back.
+        Also compute multipliers, simulate for as many cycles as they allow and, if the orbit is stable, test whether a
+        displaced start returns to it.
     most : int
         Largest number of cycles simulated for this.
 
@@ -239,7 +241,9 @@ def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
     if matrix is None:
         return Replay(error, "the return map is not smooth here: a displaced start takes other events")
     multipliers = np.linalg.eigvals(matrix).astype(complex)
-    free = len(flow_of(orbit.model).loose(orbit.model, word))  # such a motion may be moved as a whole
+    free = len(
+        flow_of(orbit.model).loose(orbit.model, word)
+    )  # directions in which the whole motion can be shifted
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
     expected = np.log(REPLAYING.loss / REPLAYING.rounding) / np.log(growth) if growth > 1.0 else np.inf
     wanted = int(min(most, max(1.0, expected)))
@@ -249,7 +253,7 @@ def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
 
 
 def _without_events(simulator: Simulator, orbit: Motion) -> Replay:
-    """A period without an event; the absorber must not slip."""
+    """Replay of an orbit without events; of a built-in machine, friction must hold the absorber."""
     model, params = orbit.model, orbit.params
     if model.in_cavity:
         held = model.rest.reserve(params, model.rest.solved(params)) >= 0.0
@@ -266,9 +270,8 @@ def monodromy(
 ) -> np.ndarray | None:
     """Derivative of the return map at the first node, shape (NODE, NODE), by central differences, extrapolated once.
 
-    Next to an impact of small speed the map is strongly curved: the step is shortened there.
-
-    None if some displaced start goes through other events, however small the step.
+    Near an impact of small speed the map is strongly curved, so that shorter steps are tried, too.
+    None if a displaced start has other events at every step.
     """
     result = np.empty((len(node), len(node)))
     for j in range(len(node)):
@@ -289,7 +292,7 @@ def monodromy(
 
 
 def _slope(simulator: Simulator, word: Word, node: np.ndarray, j: int, size: float) -> np.ndarray | None:
-    """Central difference of the return in entry `j` of the first node."""
+    """Central difference of the return map by entry `j` of the first node; None if a displaced start has other events."""
     ends = []
     for sign in (1.0, -1.0):
         moved = np.array(node, dtype=float)
@@ -302,14 +305,14 @@ def _slope(simulator: Simulator, word: Word, node: np.ndarray, j: int, size: flo
 
 
 def _following(nodes: np.ndarray, periods: int) -> np.ndarray:
-    """The nodes of a cycle from the second one on, up to the return of the first."""
+    """Nodes of a cycle from the second to the return of the first."""
     claimed = np.roll(nodes, -1, axis=0)
     claimed[-1, 0] += TWO_PI * periods
     return claimed
 
 
 def _motion(simulator: Simulator, orbit: Motion) -> float:
-    """Largest difference of the positions at the phases of the nodes, the return of the first included."""
+    """Largest difference of the positions at the phases of the nodes, including the return of the first."""
     since = np.append(orbit.nodes[:, 0] - orbit.nodes[0, 0], TWO_PI * orbit.periods)
     if since.min() < 0.0 or since.max() > since[-1]:
         return np.inf  # time does not run forward through these nodes
@@ -322,7 +325,7 @@ def _motion(simulator: Simulator, orbit: Motion) -> float:
 
 
 def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.ndarray]:
-    """The cycle from an event whose node has no dependent entry: an impact, else a turn, else any."""
+    """Rotate the cycle to an event whose node has independent entries: an impact, else a turn, else any."""
     kinds = [word.letter(i).kind for i in range(len(word))]
     first = next((kinds.index(kind) for kind in (HIT, TURN, STICK, SLIP) if kind in kinds), 0)
     nodes = np.roll(nodes, -first, axis=0)
@@ -332,7 +335,7 @@ def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.
 
 
 def _tracked(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, wanted: int) -> int:
-    """Of so many rounds that are simulated those that stay with the orbit."""
+    """Number of simulated rounds, of `wanted` ones, that stay on the orbit."""
     n, claimed = len(word), _following(nodes, periods)
     run = go_round(simulator, word, nodes[0], wanted * n).run
     found = nodes[:0] if run is None else run.nodes
@@ -345,18 +348,18 @@ def _tracked(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
 
 
 def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, growth: float) -> bool:
-    """Start a little off the orbit, wait until multipliers have shrunk that ten millionfold, and compare.
+    """Whether a displaced start returns to a stable orbit, after as many cycles as its multipliers need for a factor of 1e-7.
 
-    Beside a border, or where deviations grow a thousandfold before they shrink, the orbit may attract from very near only: smaller
-    displacements are tried as well. Where the orbit itself is known less well than that, because it is ill conditioned, starts are to
-    come to where the simulation settles that starts on it.
+    Near a border, or if deviations grow a thousandfold before they decay, the orbit may attract only from very near, so smaller
+    displacements are tried, too. If the orbit is so ill conditioned that its own error is larger, displaced starts must come to the
+    motion on which a simulation from the orbit itself settles.
     """
     cycles = min(
         LONGEST / periods, np.ceil(np.log(REPLAYING.forgotten) / np.log(max(growth, SMALLEST))) + 10.0
     )
 
     def later(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
-        """The motion from a start so far off, after these cycles, and its distance from the nodes wanted."""
+        """Distance from the wanted nodes after `wait` cycles from a start displaced by `size`, and the simulated nodes."""
         simulator.begin(word, nodes[0])
         simulator.go_on(simulator.state, size)
         simulator.skip(wait * periods)
@@ -378,7 +381,7 @@ def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
 
 
 def _nearest(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int) -> tuple[float, np.ndarray]:
-    """How near the motion comes to the orbit's nodes, and its own nodes there."""
+    """Smallest distance of the simulated motion from the orbit's nodes, and the simulated nodes there."""
     n, best = len(word), (np.inf, nodes)
     run = simulator.run(2.0 * periods + 1.0, 3 * n + 3)
     listed, seen, found = [*zip(word.events, word.modes)], [*run.occurrences], run.nodes

@@ -1,4 +1,4 @@
-"""A machine simulated from event to event, and its motions seen once per period of a cycle."""
+"""Event-driven simulation of a machine, and sections of its motions once per period of a cycle."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 Start = Mapping[str, float] | np.ndarray | None
-"""Where a simulation begins: entries by name, or a state in which another one has ended; None for rest."""
+"""Initial state of a simulation: values by name, or the last state of another simulation; None for rest."""
 
 MOST_EVENTS = 1_000_000
 
@@ -31,7 +31,7 @@ def simulate(
     events: int | None = None,
     **parameters: float,
 ):
-    """Simulate a machine from event to event: the work of `Varying.simulate`, which says what is given and what comes of it."""
+    """Simulate a machine from event to event; `Varying.simulate` documents parameters and result."""
     params = model.vector(parameters)
     if periods is None and time is None and events is None:
         raise SimulationError("neither periods, time nor events are given: say how long to simulate")
@@ -50,19 +50,19 @@ def simulate(
 
 
 class Section:
-    """A section of the motions of a machine: where the forcing passes phase zero; of a self-excited one just after the event with which the cycle begins.
+    """A Poincaré section of a machine's motions: phase zero of the forcing; for a self-excited machine, just after the cycle's first event.
 
     Parameters
     ----------
     simulator : Simulator
     word : Word
-        Of the cycle.
+        Word of the cycle.
     periods : int
         Forcing periods of the cycle.
     unit : ndarray, shape (n,)
-        What 1 is in each of the first node's unknowns, in the simulator's units.
+        Unit of each unknown of the first node, in the simulator's numbers.
     index : int
-        Of the parameter by which `varied` differentiates.
+        Index of the parameter by which `varied` differentiates.
     """
 
     def __init__(self, simulator: Simulator, word: Word, periods: int, unit: np.ndarray, index: int) -> None:
@@ -71,15 +71,15 @@ class Section:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The coordinates of a point."""
+        """Names of a point's coordinates."""
         return self.simulator.names
 
     def through(self, u: np.ndarray) -> np.ndarray:
-        """Where the motion that begins with the first of the nodes u passes the section next, shape (d,)."""
+        """Next section point of the motion that begins at the first of the nodes u, shape (d,)."""
         return self.rounds(u, 1)[0]
 
     def rounds(self, u: np.ndarray, count: int | None = None) -> np.ndarray:
-        """Where the cycle passes the section, once per forcing period, shape (periods, d)."""
+        """Section points of the cycle, one per forcing period, shape (periods, d); NaN where the simulation stops."""
         node = np.asarray(u, dtype=float)[: len(self.unit)] * self.unit
         if not self.simulator.forced:
             return node[None, 1:]
@@ -91,19 +91,19 @@ class Section:
                 self.simulator.follow(first + k)
                 points[k] = self.simulator.point
         except SimulationError:
-            pass  # it does not come back
+            pass  # the remaining points stay NaN
         return points
 
     def step(self, x: np.ndarray) -> np.ndarray:
-        """One period of the cycle later; NaN where the motion does not come back."""
+        """Image of a section point one period of the cycle later; NaN if the motion does not return."""
         return self._later(x, None)[0]
 
     def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """`step` with its derivatives by x, shape (d, d), and by the parameter, shape (d,); NaN where the simulator does not know them."""
+        """Return `step` with its derivatives by x, shape (d, d), and by the parameter, shape (d,); NaN where the simulator has no derivatives."""
         return self._later(x, self.index)
 
     def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere."""
+        """For a point at a wall: the same point on the other side of the impact (before or after it), and the direction away from the wall; None elsewhere."""
         return self.simulator.struck(x, near)
 
     def _later(self, x: np.ndarray, index: int | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

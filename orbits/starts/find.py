@@ -1,4 +1,4 @@
-"""From a word to a first orbit: a guess, a closed form, or what the simulator finds."""
+"""Find a first orbit with a given word: from a guess, a closed form, simulation, or random nodes."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
-NEARBY = 0.1  # residual of a guess that may be read from another event than its word
-BETTER = 0.1  # part of the residual with which another reading is believed
-LONG = 12  # events of a word that are shown
-LONGEST = 24  # words with more events are not looked for from random nodes
-TRIALS = 24  # simulated starts
+NEARBY = 0.1  # largest residual of a guess whose nodes may begin at another event than the word
+BETTER = 0.1  # factor by which another rotation must reduce the residual to be tried first
+LONG = 12  # events of a word that a warning shows
+LONGEST = 24  # longest word, in events, for which random nodes are tried
+TRIALS = 24  # starts that are simulated
 
 
 class StartWarning(UserWarning):
-    """An orbit was found, but not from the guess."""
+    """The orbit was not found from the guess, or is virtual."""
 
 
 class StartError(ValueError):
-    """No orbit was found; the sentence says what was tried and what the simulator finds there."""
+    """No orbit was found; the message lists the methods tried and the nearest simulated motion."""
 
 
 def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
-    """Newton's method from the orbit's nodes at fixed parameters; None if it does not converge to an orbit with this word."""
+    """Solve for the orbit by Newton's method from its nodes, at fixed parameters; None if it does not converge."""
     half = orbit.symmetric and orbit.model.has_mirror(orbit.params, orbit.model.default_parameter)
     nodes = solved_nodes(orbit.system(half), orbit.nodes, orbit.params, limit)
     if nodes is None:
@@ -52,7 +52,7 @@ def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
 def check_guess(
     word: Word, names: Sequence[str], guess: Sequence[Sequence[float]] | np.ndarray | None
 ) -> np.ndarray:
-    """The guess as an array (L, n).
+    """Convert a guess to an array (L, n).
 
     Raises
     ------
@@ -83,7 +83,7 @@ def find(
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
     parameters: Mapping[str, float] | None = None,
 ) -> Orbit:
-    """The orbit of `model` with this word.
+    """Find the orbit of a machine with a given word.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def find(
         Nodes to start Newton's method from. Without it: the closed forms, then simulation from many starts, then
         Newton's method from many random nodes.
     parameters : mapping
-        Parameters that are no fields of the machine, or replace them.
+        Values of further parameters, in place of the machine's own.
 
     Raises
     ------
@@ -167,13 +167,13 @@ def find(
 
 
 def centred(model: Varying, word: Word, nodes: np.ndarray) -> None:
-    """Move nodes along what is free in any motion with the word: to the middle."""
+    """Centre the coordinates that are free in every motion with this word."""
     for j in flow_of(model).loose(model, word):
         nodes[:, j] -= 0.5 * (nodes[:, j].max() + nodes[:, j].min())
 
 
 def _from_guess(first: Orbit) -> Orbit | None:
-    """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
+    """Solve from a guess whose nodes may begin at another event of the word, or belong to the mirror image; real orbits first."""
     mirrored = first.model.has_mirror(first.params, first.model.default_parameter)
 
     others = [replace(first, word=reading) for reading in readings(first.word, mirrored)]
@@ -214,7 +214,7 @@ def _warn_virtual(orbit: Orbit) -> None:
 def _repeated(
     model: Varying, word: Word, periods: int, parameters: Mapping[str, float] | None
 ) -> Orbit | None:
-    """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
+    """A shorter orbit repeated several times, if the word is a repetition without an orbit of its own."""
     times = math.gcd(word.repetitions, periods)
     if times == 1:
         return None
@@ -241,7 +241,7 @@ def _proper(orbit: Orbit) -> bool:
 
 
 def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
-    """An attractor with this word, or the description of the one whose word is nearest."""
+    """An attractor with this word (else None), and a description of the simulated motion with the nearest word."""
     mirrored = model.has_mirror(params)
     from orbits.attractors.search import find_attractor
 
@@ -256,7 +256,7 @@ def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> 
                 model, start, max_period=max(8, 2 * periods), patience=model.patience, **values
             )
         except SimulationError:
-            continue  # it lies within a wall
+            continue  # the start lies inside a wall
         if attractor.kind not in ("periodic", "sliding") or attractor.word is None:
             continue
         orbit = attractor.found
@@ -276,7 +276,7 @@ def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> 
 
 
 def _aligned(orbit: Orbit, word: Word) -> Orbit:
-    """The orbit in the rotation or mirror image that reads exactly `word`."""
+    """Rotation or mirror image of the orbit whose word is exactly `word`."""
     images = (orbit, orbit.mirror()) if orbit.model.has_mirror(orbit.params) else (orbit,)
     for candidate in images:
         for place in range(len(word)):
@@ -286,7 +286,7 @@ def _aligned(orbit: Orbit, word: Word) -> Orbit:
 
 
 def _random(model: Varying, word: Word, periods: int, params: np.ndarray) -> Orbit | None:
-    """Newton's method from random nodes, where the machine has any: the first real orbit found, else the first proper one."""
+    """Solve from random nodes, if the machine can draw them: the first real orbit, else the first one in which time runs forward."""
     if len(word) > LONGEST:
         return None
     generator = np.random.default_rng(7)
@@ -308,14 +308,14 @@ def _random(model: Varying, word: Word, periods: int, params: np.ndarray) -> Orb
 
 
 def directed(text: str | Word, reading: Word, nodes: np.ndarray) -> Word:
-    """The word with the directions of the guess, where its letters leave them open.
+    """Set the directions of the flights that a word leaves open to those of the guess.
 
     Parameters
     ----------
     text : str or Word
-        As it was given.
+        The word as given by the user.
     reading : Word
-        The same, directions that nothing fixes taken by default.
+        The parsed word, open directions set by default.
     nodes : float array (L, n)
         The guess: (Psi, B+) at impacts and (Psi, w) elsewhere.
 
@@ -347,7 +347,7 @@ def _agreement(word: Word, ways: np.ndarray) -> float:
 
 
 def _others(reading: Word, ways: np.ndarray) -> list[Word]:
-    """Words with the same letters whose flights go other ways."""
+    """Words with the same letters and other directions of flight."""
     found = [reading.mirror()] if reading.impact_free else []
     slips = [
         f"{letter}{'+' if way > 0.0 else '-'}" if letter == "u" and way else letter
@@ -359,7 +359,7 @@ def _others(reading: Word, ways: np.ndarray) -> list[Word]:
 
 
 def readings(word: Word, mirror: bool) -> list[Word]:
-    """The other rotations of a word, and those of its mirror image, each once."""
+    """Other rotations of a word, and those of its mirror image, each once."""
     images = (word, word.mirror()) if mirror else (word,)
     found: list[Word] = []
     for image in images:
@@ -371,14 +371,14 @@ def readings(word: Word, mirror: bool) -> list[Word]:
 
 
 def closed_orbits(model: Model, params: np.ndarray, made: type[Orbit]) -> Iterator[Orbit]:
-    """The real ones among rest and the orbits of `Model.closed_words`, stable or not.
+    """Yield the real orbits among rest and the closed forms (`Model.closed_words`), stable or not.
 
     Parameters
     ----------
     model : Model
     params : float array (P,)
     made : type
-        Of what is yielded: a kind of `orbits.orbit.Orbit`.
+        Class of the orbits: `orbits.orbit.Orbit` or a subclass.
     """
     rest = made.at_rest(model, params)
     if rest.real:
