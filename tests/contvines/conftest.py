@@ -1,5 +1,6 @@
 """The command line as a function, and a file for it."""
 
+import json
 import shlex
 
 import pytest
@@ -9,24 +10,38 @@ from contvines.store import save
 from tests.contvines import fakes
 
 
-@pytest.fixture
-def run(capsys, monkeypatch, tmp_path):
-    """Runs `contvines ...`, words or one line, in an empty folder; returns (exit status, stdout, stderr)."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
+class Runner:
+    """`contvines ...`, words or one line."""
 
-    def go(*words):
-        if len(words) == 1:
-            words = shlex.split(words[0])
+    def __init__(self, capsys):
+        self.capsys = capsys
+
+    def __call__(self, *words):
+        """(exit status, stdout, stderr)."""
         try:
-            main([str(w) for w in words])
+            main([str(word) for word in (shlex.split(words[0]) if len(words) == 1 else words)])
             status = 0
         except SystemExit as end:
             status = end.code or 0
-        out, err = capsys.readouterr()
-        return status, out, err
+        return (status, *self.capsys.readouterr())
 
-    return go
+    def ok(self, *words):
+        """What a line says that succeeds."""
+        status, out, err = self(*words)
+        assert status == 0, err
+        return out
+
+    def json(self, line):
+        """What a line says in JSON."""
+        return json.loads(self.ok(f"{line} --json"))
+
+
+@pytest.fixture
+def run(capsys, monkeypatch, tmp_path):
+    """Runs the command line in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    return Runner(capsys)
 
 
 @pytest.fixture

@@ -29,8 +29,7 @@ def test_every_example_is_valid(path):
 def test_the_file_beside_the_documentation_is_what_the_command_writes(run, tmp_path):
     Validator.check_schema(SCHEMA.schema)
     assert "$ref" not in json.dumps(SCHEMA.schema)  # editors complete what stands there
-    status, out, _ = run("schema", "-o", "a.json")
-    assert not status and "#:schema a.json" in out
+    assert "#:schema a.json" in run.ok("schema -o a.json")
     assert (tmp_path / "a.json").read_text() == (EXAMPLES.parent / "docs/study.schema.json").read_text()
 
 
@@ -75,8 +74,7 @@ MEASURES = {
 @pytest.mark.parametrize("study", MEASURES)
 def test_the_default_of_y_is_the_machines(run, study):
     path = EXAMPLES / f"{study}.toml"
-    status, out, _ = run("diagram", path, "--help")
-    assert not status and out.endswith(f"For {path} the default of -y is {MEASURES[study]}.\n")
+    assert run.ok("diagram", path, "--help").endswith(f"For {path} the default of -y is {MEASURES[study]}.\n")
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -104,10 +102,8 @@ def test_a_new_study_begins(run, kind, tmp_path):
 
 
 def test_the_self_test_and_files_name_what_computes(run, vines):
-    status, out, _ = run("doctor", "--json")
-    said = json.loads(out)
-    assert not status and said["self_test"]["passed"]
-    made = json.loads(run("show", vines, "--json")[1])["made"]
+    said, made = run.json("doctor"), run.json("show g.vines")["made"]
+    assert said["self_test"]["passed"]
     for told in (said, made):
         assert (told["numpy"], told["python"]) == (numpy.__version__, platform.python_version())
     assert said["extras"]["proofs"] in (True, False)

@@ -17,11 +17,10 @@ FRICTION = (EXAMPLES / "friction.toml").read_text()
 
 
 def test_help_lists_every_command(run):
-    status, out, _ = run("--help")
-    assert status == 0
+    out = run.ok("--help")
     for name in ("diagram", "trace", "switch", "show", "orbit", "plot", "export", "sweep"):
         assert name in out
-        assert run(name, "--help")[0] == 0
+        run.ok(name, "--help")
 
 
 def test_the_package_runs_as_a_module():
@@ -42,17 +41,14 @@ def test_help_and_version_import_nothing_heavy():
 def test_version(run):
     from contvines import __version__
 
-    assert run("--version")[1].strip() == f"contvines {__version__}"
+    assert run.ok("--version").strip() == f"contvines {__version__}"
 
 
 def test_show_prints_the_table_or_one_json_object(run, vines):
-    status, out, err = run("show", vines)
-    assert (status, err) == (0, "")
+    out = run.ok("show g.vines")
     for label in ("B1", "B2", "B3", "BP1", "VG1", "EP1"):
         assert label in out
-    status, out, _ = run("show", vines, "--json")
-    data = json.loads(out)
-    assert status == 0
+    data = run.json("show g.vines")
     assert data.pop("made")["contvines"]
     assert data == json.loads(json.dumps(fakes.pitchfork_graph().to_dict()).replace("Infinity", "null"))
 
@@ -62,24 +58,24 @@ def test_switch_on_an_unfinished_file_is_refused_and_leaves_it_alone(run, tmp_pa
         with Store.create(tmp_path / f"{finished}.vines", "f") as store:
             store.checkpoint(fakes.pitchfork_graph(finished=finished))
     before = (tmp_path / "False.vines").read_bytes()
-    status, out, err = run("switch", "False.vines", "SB1")
+    status, out, err = run("switch False.vines SB1")
     assert status != 0 and not out
     assert "False.vines" in err and "unfinished" in err and "again" in err
     assert (tmp_path / "False.vines").read_bytes() == before
-    assert "unfinished" not in run("switch", "True.vines", "SB1")[2]
+    assert "unfinished" not in run("switch True.vines SB1")[2]
 
 
 def test_show_on_an_unfinished_file_says_so(run, tmp_path):
     with Store.create(tmp_path / "u.vines", "f") as store:
         store.record("B1/0", {"x": 1.0})
-    status, out, err = run("show", "u.vines")
+    status, out, err = run("show u.vines")
     assert status == 0
     assert "unfinished" in err
     with Store.open(tmp_path / "u.vines", write=True) as store:
         store.checkpoint(fakes.pitchfork_graph(finished=False))
-    status, out, err = run("show", "u.vines")
+    status, out, err = run("show u.vines")
     assert (status, "B2" in out, "unfinished" in err) == (0, True, True)
-    assert json.loads(run("show", "u.vines", "--json")[1])["finished"] is False
+    assert run.json("show u.vines")["finished"] is False
 
 
 @pytest.mark.parametrize("kind", ["diagram", "multipliers", "network"])

@@ -1,9 +1,7 @@
 """The commands that compute, one after the other on one study, as a user would."""
 
 import csv
-import json
 import math
-import shlex
 
 import pytest
 
@@ -27,29 +25,17 @@ def folder(tmp_path_factory):
     (path / "none.toml").write_text(PAPER.replace("amplitude = 0.55", "amplitude = 0.21"))
     far = 'word = "LR"\nguess = [[1e300, 2.0], [3.0, 1e300]]'
     (path / "far.toml").write_text(PAPER.replace('word = "LR"', far))
-    with pytest.MonkeyPatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit):
         patch.chdir(path)
-        status_of("diagram s.toml --quiet")
+        main(["diagram", "s.toml", "--quiet"])
     return path
 
 
-def status_of(line):
-    with pytest.raises(SystemExit) as end:
-        main(shlex.split(line))
-    return end.value.code or 0
-
-
 @pytest.fixture
-def run(folder, monkeypatch, capsys):
-    """Runs a line in the folder; returns what it says on both channels."""
+def run(run, folder, monkeypatch):
+    """Runs lines in the folder."""
     monkeypatch.chdir(folder)
-
-    def go(line, status=0):
-        ended, said = status_of(line), capsys.readouterr()
-        assert ended == status, said.err
-        return said
-
-    return go
+    return run
 
 
 def kept(name):
@@ -57,7 +43,7 @@ def kept(name):
 
 
 def test_show_keeps_the_contract(run):
-    data = json.loads(run("show s.vines --json").out)
+    data = run.json("show s.vines")
     assert {"model", "parameter", "branches", "special", "switches"} <= set(data)
     fields = {
         "branches": "label word periods impacts symmetric real range points stable ended",
@@ -81,37 +67,37 @@ def test_show_keeps_the_contract(run):
 
 
 def test_orbit_of_a_label_is_the_object_of_the_contract(run):
-    data = json.loads(run("orbit s.vines SB1 --json --animate o.html").out)
+    data = run.json("orbit s.vines SB1 --animate o.html")
     assert len(data["nodes"]) == 2
     assert all(set(n) >= {"event", "phase", "B_pre", "B_post", "w", "w_rate"} for n in data["nodes"])
     # a symmetry breaking: one multiplier of the full period is +1 (MODEL: -1 of the half map)
     assert min(abs(complex(*m) - 1) for m in data["multipliers"]) < 1e-6
     assert all({"kind", "segment", "value"} <= set(m) for m in data["margins"])
-    assert "multipliers:" in run("orbit s.vines B1:3").out
+    assert "multipliers:" in run.ok("orbit s.vines B1:3")
 
 
 def test_trace_follows_one_branch(run):
-    run("trace s.toml")  # where s.vines, the diagram, is: its name is not taken
+    run.ok("trace s.toml")  # where s.vines, the diagram, is: its name is not taken
     graph = kept("s-trace.vines")
     assert list(graph.branches) == ["B1"] and not graph.switches
     assert graph["B1"].points.tobytes() == kept("s.vines")["B1"].points.tobytes()
 
 
 def test_switch_adds_the_branch_that_leaves_a_point(run, folder):
-    run("trace s.toml -o w.vines --quiet")
-    assert "points, amplitude from 0.7268" in run("switch w.vines SB1").out
+    run.ok("trace s.toml -o w.vines --quiet")
+    assert "points, amplitude from 0.7268" in run.ok("switch w.vines SB1")
     graph = kept("w.vines")
     (switch,) = [s for s in graph.switches if s.point == "SB1"]
     assert switch.source == "B1"
     assert graph[switch.target].description["symmetric"] is False
     assert graph["SB1"].mirror
     before = (folder / "w.vines").read_bytes()
-    assert "already: B2; " in run("switch w.vines SB1").out
+    assert "already: B2; " in run.ok("switch w.vines SB1")
     assert (folder / "w.vines").read_bytes() == before
 
 
 def test_virtual_branches_are_marked_and_only_there_on_request(run):
-    run("diagram v.toml --quiet --plot v.png")
+    run.ok("diagram v.toml --quiet --plot v.png")
     graph = kept("v.vines")
     assert all(branch.real for branch in kept("s.vines"))
     virtual = [branch.label for branch in graph if not branch.real]
@@ -122,7 +108,8 @@ def test_virtual_branches_are_marked_and_only_there_on_request(run):
 
 
 def test_a_start_that_is_not_there_says_what_was_tried(run, folder):
-    said = run("diagram none.toml", status=1).err
+    status, _, said = run("diagram none.toml")
+    assert status == 1
     tried = "no orbit 'LR' with periods = 1 was found at amplitude = 0.21; tried: the closed forms"
     assert f"none.toml: [start] {tried}" in said
     assert "the nearest motion that the simulator finds is 'tt'" in said
@@ -130,18 +117,18 @@ def test_a_start_that_is_not_there_says_what_was_tried(run, folder):
 
 
 def test_a_graph_that_was_cut_says_so(run):
-    assert "max_branches = 2" in run("diagram cut.toml").out
-    cut = json.loads(run("show cut.vines --json").out)
+    assert "max_branches = 2" in run.ok("diagram cut.toml")
+    cut = run.json("show cut.vines")
     assert len(cut["branches"]) == 2 and "max_branches = 2" in cut["message"]
 
 
 def test_a_guess_that_leads_nowhere_is_not_dropped_silently(run):
-    said = run("diagram far.toml --quiet").err
-    assert "the guess does not lead to an orbit 'LR'" in said and "found by simulation" in said
+    status, _, said = run("diagram far.toml --quiet")
+    assert not status and "the guess does not lead to an orbit 'LR'" in said and "found by simulation" in said
 
 
 def test_export_has_the_measures_of_every_point(run):
-    run("export s.vines --to csv")
+    run.ok("export s.vines --to csv")
     with open("s.csv", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["branch"] == "B1"]
     assert {(row["word"], row["periods"]) for row in rows} == {("LR", "1")}
@@ -159,28 +146,29 @@ def test_export_has_the_measures_of_every_point(run):
 def test_large_results_are_told_in_brief(run, monkeypatch, line):
     """A summary and where the tables are, or with --details the tables."""
     monkeypatch.setattr("contvines.command.frame.MANY", 0)
-    brief = run(line).out
+    brief = run.ok(line)
     assert "stable motions of" in brief and "contvines show" in brief and "from .. to" not in brief
-    assert "from .. to" in run(line + " --details").out
+    assert "from .. to" in run.ok(line + " --details")
 
 
 def test_an_atlas_goes_on_with_a_larger_budget(run, folder):
     """The file of the small one is not set aside; the result is that of the large one alone."""
-    said = run("atlas a.toml --budget 1")
-    assert "left out are" in said.out and "contvines atlas a.toml --budget 2 goes on" in said.err
-    said = run("atlas a.toml")
-    assert "nothing to compute" not in said.err and "left out" not in said.out
-    run("atlas a.toml -o alone.vines --quiet")
+    status, out, err = run("atlas a.toml --budget 1")
+    assert not status and "left out are" in out and "contvines atlas a.toml --budget 2 goes on" in err
+    status, out, err = run("atlas a.toml")
+    assert not status and "nothing to compute" not in err and "left out" not in out
+    run.ok("atlas a.toml -o alone.vines --quiet")
     assert same_graph(kept("a-atlas.vines"), kept("alone.vines"))
     assert not (folder / "a-atlas.old.vines").exists()
 
 
 def test_a_sweep_is_drawn_over_the_graph_of_its_machine_alone(run, folder):
-    run("sweep sweep.toml --over s.vines --plot o.png -q -o o.csv")
+    run.ok("sweep sweep.toml --over s.vines --plot o.png -q -o o.csv")
     assert (folder / "o.png").stat().st_size > 10_000
     other = PAPER.replace("0.76", "0.6").replace("amplitude = 0.55", "amplitude = 0.5")
     (folder / "other.toml").write_text(other)
-    said = run("sweep other.toml --over s.vines --plot b.png", status=1).err
+    status, _, said = run("sweep other.toml --over s.vines --plot b.png")
+    assert status == 1
     assert (
         "s.vines: this is the graph of another machine: restitution = 0.76 there and 0.6 in the study" in said
     )

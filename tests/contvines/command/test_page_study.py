@@ -1,7 +1,5 @@
 """Studies whose machine is a file of Python, or a structure of masses and springs."""
 
-import json
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -13,21 +11,10 @@ from tests.contvines.studies import EXAMPLES, STOP, STOP_FILE
 
 @pytest.fixture
 def study(run, tmp_path):
+    """The file of a study, stop.toml, beside its machine."""
     (tmp_path / "stop.py").write_text(STOP_FILE)
     (tmp_path / "stop.toml").write_text(STOP)
     return tmp_path / "stop.toml"
-
-
-@pytest.fixture
-def told(run):
-    """What a command says in JSON."""
-
-    def ask(*words):
-        status, out, err = run(*words, "--json")
-        assert status == 0, err
-        return json.loads(out)
-
-    return ask
 
 
 @pytest.fixture
@@ -37,24 +24,24 @@ def elsewhere(monkeypatch):
 
 
 def test_a_page_from_study_to_file(run, study):
-    assert run("diagram", study, "-q")[0] == 0
+    run.ok("diagram stop.toml -q")
     graph = cv.load("stop.vines")
     assert graph.model["gap"] == 0.05 and "Machine(" in graph.model["source"]
     assert graph["B1"].description["word"] == "R"
-    assert "R  k = 1  (real)" in run("orbit", study)[1]
-    assert run("sweep", study, "-q", "--plot", "s.png")[0] == 0
+    assert "R  k = 1  (real)" in run.ok("orbit stop.toml")
+    run.ok("sweep stop.toml -q --plot s.png")
     rows = (study.parent / "stop-sweep.csv").read_text().splitlines()
     assert len(rows) == 5 and all(",periodic,R,1,1," in row for row in rows[1:])
 
 
 def test_a_file_runs_no_page_and_says_when_it_has_changed(run, study, elsewhere):
-    run("diagram", study, "-q")
+    run.ok("diagram stop.toml -q")
     elsewhere()
     assert cv.load("stop.vines")["B1"].problem is None
     assert cv.load("stop.vines", trust=True)["B1"].problem is not None
     (study.parent / "stop.py").write_text(STOP_FILE + "# another\n")
-    assert "the machine file has changed since the result was made" in run("show", "stop.vines")[2]
-    status, _, err = run("orbit", "stop.vines", "B1", "--trust")
+    assert "the machine file has changed since the result was made" in run("show stop.vines")[2]
+    status, _, err = run("orbit stop.vines B1 --trust")
     assert status and "make the result anew" in err and "does not hold" not in err
 
 
@@ -65,35 +52,35 @@ def test_a_folder_may_be_moved(run, study, elsewhere, monkeypatch):
     (study.parent / "stop.py").rename(here / "files" / "stop.py")
     (here / "stop.toml").write_text(STOP.replace("stop.py", "files/stop.py"))
     monkeypatch.chdir(here)
-    run("diagram", "stop.toml", "-q", "--no-look")
+    run.ok("diagram stop.toml -q --no-look")
     before = cv.load("stop.vines", trust=True)["EP1"].orbit
     here.rename(there)
     monkeypatch.chdir(there)
     elsewhere()
-    assert "nothing to compute" in run("diagram", "stop.toml", "--no-look")[2]
+    assert "nothing to compute" in run("diagram stop.toml --no-look")[2]
     after = cv.load("stop.vines", trust=True)["EP1"].orbit
     assert (after.multipliers == before.multipliers).all() and after.margin == before.margin
     (there / "files" / "stop.py").unlink()
-    assert "put it back, or beside the result" in run("show", "stop.vines")[2]
+    assert "put it back, or beside the result" in run("show stop.vines")[2]
 
 
 @pytest.mark.slow
-def test_an_atlas_and_basins_of_a_page(run, told, study):
+def test_an_atlas_and_basins_of_a_page(run, study):
     study.write_text(STOP + "[atlas]\nvalues = [2.3]\nstarts = 6\nscan = 0\n")
-    assert run("atlas", study, "-q", "-o", "a.vines")[0] == 0
+    run.ok("atlas stop.toml -q -o a.vines")
     met = cv.load("a.vines").attractors
     assert [(a.word, a.kind, a.share) for a in met] == [("R", "periodic", 1.0)]
-    found = told("basins", study, "--at", "2.3", "--points", "4")
+    found = run.json("basins stop.toml --at 2.3 --points 4")
     assert found["plane"] == ["x", "v"]
     assert {a["kind"] for a in found["attractors"]} == {"periodic", "impossible"}
 
 
 @pytest.mark.slow
-def test_a_survey_of_a_page(told, study):
+def test_a_survey_of_a_page(run, study):
     """With the wall at zero the machine is as large as its forcing: twice the forcing, twice the speeds, at the same frequencies."""
     vary = '[survey]\nvary = {forcing = [1.0, 2.0, 4.0]}\noutcomes = ["peak", "stable:R"]\ngaps = 0\n'
     study.write_text(STOP.replace("gap = 0.05", "gap = 0.0") + vary)
-    rows = told("survey", study, "--workers", "1", "-q")["rows"]
+    rows = run.json("survey stop.toml --workers 1 -q")["rows"]
     assert [row["peak"] / rows[0]["peak"] for row in rows] == pytest.approx([1.0, 2.0, 4.0], rel=1e-6)
     assert [row["stable_R"] for row in rows] == pytest.approx([rows[0]["stable_R"]] * 3, rel=1e-9)
 
@@ -117,10 +104,10 @@ def struck(restitution, count, forcing=1.0, frequency=2.3, damping=0.05, gap=0.0
 
 
 @pytest.mark.slow
-def test_a_page_is_calibrated(told, study):
+def test_a_page_is_calibrated(run, study):
     hits = "\n".join(str(t) for t in struck(0.66, 8))
     (study.parent / "hits.csv").write_text("time\n" + hits)
-    found = told("calibrate", study, "--impacts", "hits.csv", "--limits", "restitution=0.4,0.9")
+    found = run.json("calibrate stop.toml --impacts hits.csv --limits restitution=0.4,0.9")
     assert found["values"]["restitution"] == pytest.approx(0.66, abs=1e-6)
 
 
@@ -128,7 +115,7 @@ def test_a_page_is_calibrated(told, study):
 def test_the_grazes_of_two_masses_are_borders(run, tmp_path):
     """NLvib's two masses: |receptance x1 of a force on 2| times 0.1 is 1."""
     (tmp_path / "two.toml").write_text((EXAMPLES / "structures" / "two_masses.toml").read_text())
-    assert run("diagram", "two.toml")[0] == 0
+    run.ok("diagram two.toml")
     graph = cv.load("two.vines")  # without running anything
     values = sorted(float(point.value) for point in graph.of_kind("switch-graze"))
     np.testing.assert_allclose(values, (0.5818996390393119, 0.6534401404162605), rtol=1e-12)

@@ -45,12 +45,12 @@ def test_a_failed_start_leaves_nothing_and_the_mended_study_runs(run, tmp_path, 
     assert status == 1 and "Traceback" not in err
     assert names(tmp_path) == ["s.toml"]
     study()
-    assert run(f"{command} s.toml -o x.vines -q")[0] == 0
+    run.ok(f"{command} s.toml -o x.vines -q")
     assert names(tmp_path) == ["s.toml", "x.vines"]
 
 
 def test_an_edited_study_is_refused_and_fresh_sets_the_old_file_aside(run, tmp_path, study):
-    assert run(DIAGRAM)[0] == 0
+    run.ok(DIAGRAM)
     first = load("s.vines", problems=False)
     study(OTHER)
     status, _, err = run(DIAGRAM)
@@ -60,7 +60,7 @@ def test_an_edited_study_is_refused_and_fresh_sets_the_old_file_aside(run, tmp_p
     assert not same_graph(load("s.vines", problems=False), first)
     (tmp_path / "s.vines").write_bytes(b"mine")  # what cannot be read is set aside, too
     assert run(DIAGRAM)[0] == 1
-    assert run(DIAGRAM + " --fresh")[0] == 0  # nothing that was set aside is lost
+    run.ok(DIAGRAM + " --fresh")  # nothing that was set aside is lost
     assert names(tmp_path) == ["s.old.vines", "s.old2.vines", "s.toml", "s.vines"]
     assert same_graph(load("s.old.vines", problems=False), first)
     assert (tmp_path / "s.old2.vines").read_bytes() == b"mine"
@@ -69,7 +69,7 @@ def test_an_edited_study_is_refused_and_fresh_sets_the_old_file_aside(run, tmp_p
 @pytest.mark.slow
 def test_rows_of_another_study_are_not_lost(run, tmp_path, study):
     """An edited study neither replaces a finished survey nor throws the rows of an unfinished one away; a journal without rows is nothing to lose."""
-    assert run(SURVEY)[0] == 0
+    run.ok(SURVEY)
     before = (tmp_path / "s.nc").read_bytes()
     study(OTHER)
     status, _, err = run(SURVEY)
@@ -83,7 +83,7 @@ def test_rows_of_another_study_are_not_lost(run, tmp_path, study):
         status, _, err = run(line)
         assert status == 1 and "1 rows of an unfinished" in err and "--fresh" in err
         assert '"index": 1' in journal.read_text()
-        assert run(line + " --fresh")[0] == 0
+        run.ok(line + " --fresh")
         assert '"index": 1' in (tmp_path / f"t.old.{target[2:]}.unfinished").read_text()
         (tmp_path / target).unlink()
         with kept:
@@ -95,11 +95,11 @@ def test_rows_of_another_study_are_not_lost(run, tmp_path, study):
 @pytest.mark.slow
 def test_a_survey_that_was_ended_before_its_last_file(run, tmp_path, study):
     """Its NetCDF file is there, the CSV is not, and its rows are still beside it."""
-    assert run(SURVEY)[0] == 0
+    run.ok(SURVEY)
     whole = {name: (tmp_path / name).read_bytes() for name in names(tmp_path)}
     (tmp_path / "s.csv").unlink()
     (tmp_path / "s.nc.unfinished").write_text("")
-    assert run(SURVEY)[0] == 0
+    run.ok(SURVEY)
     assert {name: (tmp_path / name).read_bytes() for name in names(tmp_path)} == whole
 
 
@@ -159,7 +159,7 @@ def test_a_folder_in_which_nothing_can_be_written(run, tmp_path, study):
     """A finished result can be asked for again there."""
     folder = tmp_path / "locked"
     folder.mkdir()
-    assert run(DIAGRAM + " -q -o locked/d.vines")[0] == 0
+    run.ok(DIAGRAM + " -q -o locked/d.vines")
     folder.chmod(0o500)
     try:
         status, out, _ = run(DIAGRAM + " -o locked/d.vines")

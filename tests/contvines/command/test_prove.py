@@ -29,9 +29,7 @@ def kept(made, run, tmp_path):
 
 
 def test_a_study(run):
-    status, out, _ = run("prove", EXAMPLES / "friction.toml", "--json")
-    proof = json.loads(out)
-    assert status == 0
+    proof = run.json(f"prove {EXAMPLES}/friction.toml")
     assert (proof["existence"], proof["real"], proof["stable"]) == (True, True, True)
     assert 0 < proof["radius"] < 1e-20
     assert [[len(pair) for pair in node] for node in proof["nodes"]] == [[2, 2], [2, 2]]
@@ -39,16 +37,13 @@ def test_a_study(run):
 
 
 def test_a_file_its_labels_and_its_certificates(kept, run, tmp_path):
-    status, out, _ = run("prove a.vines --json")
-    proofs, graph = json.loads(out), cv.load("a.vines")
-    assert status == 0 and set(proofs) == set(graph.special) == set(graph.proofs)
+    proofs, graph = run.json("prove a.vines"), cv.load("a.vines")
+    assert set(proofs) == set(graph.special) == set(graph.proofs)
     assert all(proof["existence"] for proof in proofs.values())
     assert abs(float(proofs["SB1"]["value"][0]) ** 2 - 0.5282903) < 5e-8
     assert "proved" in str(graph)
-    status, out, _ = run("prove a.vines B1:5 -o c.json")
-    assert status == 0 and "exists" in out
-    status, out, _ = run("prove a.vines --check")
-    assert status == 0 and out.count("verified") == len(graph.special) + 1
+    assert "exists" in run.ok("prove a.vines B1:5 -o c.json")
+    assert run.ok("prove a.vines --check").count("verified") == len(graph.special) + 1
     certificate = json.loads((tmp_path / "c.json").read_text())
     claims = certificate["B1:5"]["claims"]
     claims["stable"] = not claims["stable"]
@@ -95,8 +90,7 @@ def test_what_is_proved_is_marked_in_tables_pictures_and_the_report(kept, run):
     assert len(marked.lines) == len(unmarked.lines) + len(proof.pieces) + 1
     graph.save("marked.vines")
     assert str(cv.load("marked.vines")) == shown
-    status, out, _ = run("prove marked.vines B1 --check")
-    assert status == 0 and "verified" in out
+    assert "verified" in run.ok("prove marked.vines B1 --check")
     told = contents(graph, "marked.vines")
     assert [branch["proof"] for branch in told["branches"]] == ["0.55..0.57 real, stable"]
     assert next(point for point in told["special"] if point["label"] == "SB1")["proof"] == "proved"

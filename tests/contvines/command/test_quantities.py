@@ -1,7 +1,6 @@
 """Studies in kilograms, millimetres and hertz, over conditions and within bounds: read, continued and shown."""
 
 import csv
-import json
 
 import numpy as np
 import pytest
@@ -73,17 +72,17 @@ def test_quantities_of_a_declared_machine_are_numbers_in_its_units():
 
 def test_tables_json_and_csv_speak_the_study_s_units(run, tmp_path):
     (tmp_path / "case.toml").write_text(SI + "[sweep]\ncount = 3\n")
-    assert "frequency [Hz]" in run("diagram", "case.toml")[1]
-    about = json.loads(run("show", "case.vines", "--json")[1])
+    assert "frequency [Hz]" in run.ok("diagram case.toml")
+    about = run.json("show case.vines")
     assert about["units"]["frequency"] == "Hz" and about["units"]["max_abs_q1"] == "mm"
     assert about["within"] == pytest.approx([7.5, 8.2])
     fold = next(p for p in about["special"] if p["kind"] == "fold")
     assert 7.5 < fold["value"]["frequency"] < 8.2
-    shown = run("orbit", "case.vines", fold["label"])[1]
+    shown = run.ok("orbit", "case.vines", fold["label"])
     assert "half_width = 15 mm" in shown and "B_pre [mm/s]" in shown
-    assert run("export", "case.vines", "--to", "csv")[0] == 0
+    run.ok("export case.vines --to csv")
     assert {"frequency [Hz]", "max_abs_q1 [mm]"} <= set(table(tmp_path / "case.csv")[0])
-    assert run("sweep", "case.toml")[0] == 0
+    run.ok("sweep case.toml")
     rows = table(tmp_path / "case-sweep.csv")
     assert "max_abs_q1 [mm]" in rows[0]
     assert [float(row["value [Hz]"]) for row in rows] == pytest.approx([7.5, 7.85, 8.2])
@@ -108,7 +107,7 @@ def test_a_survey_over_a_condition_is_one_over_what_follows(run, tmp_path):
     peaks = []
     for text in (WARM, PAPER + "[survey]\nvary.restitution = [0.8, 0.65]\n"):
         (tmp_path / "s.toml").write_text(text.replace("[0.2, 1.2]", "[0.5, 0.7]"))
-        assert run("survey", "s.toml", "--workers", "1", "--quiet", "--fresh")[0] == 0
+        run.ok("survey s.toml --workers 1 --quiet --fresh")
         peaks.append([float(row["peak"]) for row in table(tmp_path / "s-survey.csv")])
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-9)
     assert [row["temperature"] for row in table(tmp_path / "s-survey.old.csv")] == ["20.0", "70.0"]
@@ -119,7 +118,7 @@ def test_branches_end_where_a_measure_leaves_its_interval(run, tmp_path):
     (tmp_path / "free.toml").write_text(PAPER)
     (tmp_path / "s.toml").write_text(PAPER + "bounds = { B = [-inf, 1.1] }\n")
     for name in ("free", "s"):
-        assert run("diagram", f"{name}.toml", "--quiet", "--no-look")[0] == 0
+        run.ok(f"diagram {name}.toml --quiet --no-look")
     free, graph = load("free.vines")["B1"], load("s.vines")
     assert free.measure("B").max() > 1.2
     assert graph["B1"].measure("B").max() == pytest.approx(1.1, abs=1e-9)

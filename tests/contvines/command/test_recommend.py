@@ -194,16 +194,15 @@ def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(run, tmp
         rows = sweep(model.with_(half_width=place.value), "frequency", np.linspace(7.8, 8.2, 41))
         met = max(row.measures["max_abs_q1"] for row in rows)
         assert met <= 1.01 * place.worst or math.isnan(place.worst)
-    status, told, _ = run("recommend machine.toml --plot choice.png")
-    assert status == 0 and (tmp_path / "choice.png").exists()
+    told = run.ok("recommend machine.toml --plot choice.png")
+    assert (tmp_path / "choice.png").exists()
     assert "Recommended: half width" in told and "tuned absorber of the same mass" in told
-    assert run("report machine-recommend.json")[0] == 0
+    run.ok("report machine-recommend.json")
     page = (tmp_path / "machine-recommend.html").read_text()
     assert "<svg" in page and "tuned absorber of the same mass" in page and "3.2 kg" in page
     assert page.count("not known") <= 1 + len(found.unknown)  # nothing is hidden, nothing is dumped
     monkeypatch.setattr("contvines.report.answer.BROWSERS", ())
-    status, out, _ = run("report machine-recommend.json --pdf a.pdf")
-    assert status == 0 and "a.pdf (set by matplotlib, as no browser" in out
+    assert "a.pdf (set by matplotlib, as no browser" in run.ok("report machine-recommend.json --pdf a.pdf")
 
 
 def recommended(folder, within, gaps):

@@ -18,7 +18,7 @@ STUDY = PAPER.replace("[0.2, 1.2]", "[0.2, 0.6]")
 def file(run, tmp_path):
     """The result of a study."""
     (tmp_path / "s.toml").write_text(STUDY)
-    assert run("diagram s.toml -q")[0] == 0
+    run.ok("diagram s.toml -q")
     return tmp_path / "s.vines"
 
 
@@ -33,13 +33,11 @@ def edited(file, old, new):
 
 def test_a_result_is_the_same_again_though_its_study_has_gone(run, file):
     file.with_suffix(".toml").unlink()
-    status, out, _ = run("rerun s.vines -q")
-    assert not status and "no differences" in out
+    assert "no differences" in run.ok("rerun s.vines -q")
     first, second = load("s.vines"), load("s-rerun.vines")
     assert [p.value for p in first.special.values()] == [p.value for p in second.special.values()]
-    status, out, _ = run("rerun s.vines --json -q")
-    said = json.loads(out)
-    assert not status and said["same_study"] and said["differences"] == []
+    said = run.json("rerun s.vines -q")
+    assert said["same_study"] and said["differences"] == []
     assert said["before"]["numpy"] == said["after"]["numpy"]
 
 
@@ -77,11 +75,11 @@ fast = cv.Kind("fast", "FA", test=too_fast, locus=too_fast)
 def test_a_point_of_a_kind_of_the_study_is_followed_in_a_second_parameter(run, tmp_path):
     (tmp_path / "fast.py").write_text(FAST)
     (tmp_path / "s.toml").write_text(STUDY + 'kinds = "fast.py:fast"\n')
-    assert run("diagram s.toml -q --no-look")[0] == 0
+    run.ok("diagram s.toml -q --no-look")
     line = "locus s.vines FA1 --over friction --within 0.4 0.55 -q"
     status, _, err = run(line)
     assert status and "--trust allows it" in err
-    assert run(line + " --trust")[0] == 0
+    run.ok(line + " --trust")
     speeds = [
         ABSORBER.changed(friction=q).symmetric_orbit(amplitude=p).measure("impact_speed")
         for p, q in load("s-FA1.vines").loci["FA1"].values

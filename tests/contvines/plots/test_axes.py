@@ -1,7 +1,7 @@
 """Every plot function draws on given axes and respects what the user asks of style, legend and size."""
 
 import itertools
-from functools import cache
+from functools import cache, partial
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -62,20 +62,20 @@ SURVEY = Survey(PLAN, {"peak": np.array([[1.0, 2.0], [2.0, 3.0], [3.0, 5.0]])}, 
 LATE, LARGEST = "measured less computed [s]", "largest displacement of the oscillator [mm]"
 # Names, and how many axes each wants
 FUNCTIONS = {
-    "diagram": (1, lambda **k: plot_diagram(GRAPH, **k)),
-    "sweep": (1, lambda **k: plot_sweep(DOTS, "p", GRAPH, "u0", **k)),
-    "sweep alone": (1, lambda **k: plot_sweep(DOTS, "amplitude", **k)),
-    "network": (1, lambda **k: plot_network(GRAPH, **k)),
-    "multipliers": (2, lambda **k: plot_multipliers(GRAPH.branches["B2"], **k)),
-    "atlas": (2, lambda **k: plot_atlas(ATLAS, **k)),
-    "basins": (1, lambda **k: plot_basins(basins(), **k)),
-    "circles": (3, lambda **k: plot_circles(circles(), **k)),
-    "portrait": (1, lambda **k: plot_portrait(np.array([[0.0, 1.0], [1.0, 0.0]]), **k)),
-    "survey": (1, lambda **k: plot_survey(SURVEY, **k)),
-    "transient": (1, lambda **k: plot_transient(DECAY, np.linspace(0.1, 1.4, 30), **k)),
-    "decay": (1, lambda **k: plot_transient(ENERGY, **k)),
-    "calibration": (1, lambda **k: plot_calibration(TIME, 1e-5 * np.sin(9 * TIME), xlabel="t", ylabel=LATE, **k)),
-    "response": (1, lambda **k: plot_calibration(TIME, 0.0 * TIME, TIME**2, xlabel="p", ylabel=LARGEST, **k)),
+    "diagram": (1, partial(plot_diagram, GRAPH)),
+    "sweep": (1, partial(plot_sweep, DOTS, "p", GRAPH, "u0")),
+    "sweep alone": (1, partial(plot_sweep, DOTS, "amplitude")),
+    "network": (1, partial(plot_network, GRAPH)),
+    "multipliers": (2, partial(plot_multipliers, GRAPH.branches["B2"])),
+    "atlas": (2, partial(plot_atlas, ATLAS)),
+    "basins": (1, lambda **options: plot_basins(basins(), **options)),
+    "circles": (3, lambda **options: plot_circles(circles(), **options)),
+    "portrait": (1, partial(plot_portrait, np.array([[0.0, 1.0], [1.0, 0.0]]))),
+    "survey": (1, partial(plot_survey, SURVEY)),
+    "transient": (1, partial(plot_transient, DECAY, np.linspace(0.1, 1.4, 30))),
+    "decay": (1, partial(plot_transient, ENERGY)),
+    "calibration": (1, partial(plot_calibration, TIME, 1e-5 * np.sin(9 * TIME), xlabel="t", ylabel=LATE)),
+    "response": (1, partial(plot_calibration, TIME, 0.0 * TIME, TIME**2, xlabel="p", ylabel=LARGEST)),
 }  # fmt: skip
 
 
