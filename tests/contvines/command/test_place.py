@@ -16,7 +16,7 @@ from tests.contvines.studies import PAPER
 
 STUDY = (
     PAPER.replace("[0.2, 1.2]", "[0.5, 0.62]")
-    + "{more}\n[sweep]\ncount = 3\ntransient = 30\n[survey]\nvary.friction = [0.5, 0.55]\ngaps = 0\n"
+    + "{more}\n[sweep]\ncount = 3\ntransient = 30\n[survey]\nvary.friction = { values = [0.5, 0.55] }\ngaps = 0\n"
 )
 OTHER = "max_step = 0.02"
 DIAGRAM = "diagram s.toml --no-look"

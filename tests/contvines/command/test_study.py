@@ -201,6 +201,7 @@ def test_fingerprint_depends_on_what_decides_the_result_and_on_nothing_else(tmp_
 
 # Lines of a file, and what is said of it
 MANGLED = {
+    "[model\nname = ": "x.toml: this is not valid TOML: ",
     "friction = 0,5": "friction = 0,5 (line 2): decimals are written with a point: write 0.5",
     "virtual = no": "virtual = no (line 2): write false",
     "word = LR  # the first orbit": 'word = LR (line 2): text stands in quotes: write "LR"',
