@@ -1,4 +1,4 @@
-"""Marking: from located events to labelled special points, each listed once."""
+"""Label special points: turn the located events of a branch into special points of the graph, each listed once."""
 
 from __future__ import annotations
 
@@ -29,19 +29,37 @@ from .match_borders import is_border
 from .run import Origin, Pending, Run
 
 TURNING_KINDS = ("branch-point", "symmetry-breaking")
-LAST_PLACES = 8  # units in the last place of the parameter by which two values may differ by rounding alone
+LAST_PLACES = 8  # two parameter values may differ by this many units in the last place through rounding
 
 
 def mark(
     run: Run, branch: Branch, half: HalfBranch, pending: Pending, origin: int | None
 ) -> list[SpecialPoint]:
-    """Label the events and interval ends of a branch in order along it, `origin` among them; returns what is new on it."""
+    """Label the events and interval ends of a branch, in order along it, and determine its stability.
+
+    Parameters
+    ----------
+    run : Run
+    branch : Branch
+        Its marks, endings and stability are set.
+    half : HalfBranch
+        Points and events of the branch.
+    pending : Pending
+        The pending branch from which it was traced.
+    origin : int or None
+        Index of the special point from which the branch was reached; see `origin_index`.
+
+    Returns
+    -------
+    list of SpecialPoint
+        The new special points.
+    """
     engine, last, marking = half.engine, len(branch) - 1, _Marking(run, branch, half, pending)
     marks: list[tuple[int, str]] = []
     fresh: list[SpecialPoint] = []
     ends = list(branch.endings)
     stretches = [(i, event) for i, event in half.events if event.role is Role.UNRESOLVED]
-    # a side branch only turns at its own branch points: there is no fold
+    # at a branch point a side branch turns: this is no fold of its own
     resolved = [(i, event) for i, event in half.events if event.role is not Role.UNRESOLVED]
     turning = [event.point for _, event in resolved if event.kind in TURNING_KINDS]
     events = [
@@ -58,7 +76,7 @@ def mark(
     taken = False
     for index, event in sorted(events, key=lambda pair: pair[0]):
         meets, kind = event.role is Role.MEETING, marking.kind(event)
-        # a doubled branch that has come back here may end where this one does: that border is one of its own, with more beyond it
+        # after a doubled branch that returned here, a border at the end is not compared with known ones: this branch's border is its own
         label = marking.known(event, kind, index == 0 or (index == last and not taken))
         if label is None:
             label = run.new_label(run.kind(kind).label)
@@ -70,7 +88,7 @@ def mark(
                 known.index = min(index, known.index)
                 continue
             if not meets and known.kind not in BORDERS and known.met_from is not None:
-                # now seen on the branch of the more symmetric solutions: that one owns it
+                # the point was found first by a less symmetric branch; now it is put on the branch of the more symmetric solutions
                 taken = True
                 fresh.append(marking.special(label, kind, event, index, known))
                 for other in run.graph.branches.values():
@@ -85,7 +103,7 @@ def mark(
         if index in (0, last) and event.ends_branch:
             ends[0 if index == 0 else 1] = marking.ending(label, kind, event)
     branch.marks, branch.endings = tuple(sorted(marks)), (ends[0], ends[1])
-    # a fold that is a branch point, or a second one that is the first, is no place at which stability changes
+    # stability does not change at events without a mark of their own: folds at branch points, points located twice
     places = {i for i, _ in marks + stretches} | ({origin} if origin is not None else set())
     twins = {i for i, _ in half.events} - places
     branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
@@ -95,7 +113,7 @@ def mark(
 
 
 class _Marking(NamedTuple):
-    """A branch whose special points are labelled."""
+    """Functions for labelling the special points of one branch."""
 
     run: Run
     branch: Branch
@@ -107,18 +125,18 @@ class _Marking(NamedTuple):
         return self.half.engine
 
     def end(self, index: int) -> Located:
-        """The end of the interval, at an end of the branch."""
+        """Return the event "end of the interval" at an end of the branch."""
         engine, (u, p, tangent) = self.engine, self.half.at(index)
         bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
         point = engine.polish(u, p, engine.at_parameter, p, tangent)
-        if point is None:  # by chance the equations end just there, and cannot be differentiated
+        if point is None:  # by chance the equations end exactly there, and cannot be differentiated
             row = np.full(engine.row_size, np.nan)
             row[: 2 * engine.m] = self.half.joined().spectrum[index]
             point = Solved(u, p, tangent, row, 1.0, 0.0, 0.0)
         return Located(float(index), point, "end", bracket=(bound, bound))
 
     def stretch(self, index: int, event: Located) -> Unresolved:
-        """A stretch whose ends do not agree with what was found between them; the points beside it tell what is certain."""
+        """Return the unresolved stretch of an event, with the counts of multipliers at the points beside it."""
         rows = self.half.joined().spectrum[[max(index - 1, 0), min(index + 1, len(self.branch) - 1)]]
         before, after = (tuple(found) for found in counts(self.engine, rows).tolist())
         low, high = sorted(event.bracket)
@@ -126,9 +144,9 @@ class _Marking(NamedTuple):
         return Unresolved(self.branch.label, low, high, index, reason, before, after)
 
     def kind(self, event: Located) -> str:
-        """The kind of an event; a branch point is classed by the symmetry of its null vector.
+        """Return the kind of an event. A branch point whose null vector is changed in sign by a symmetry has the kind of this symmetry.
 
-        The image of a single null vector is that vector or its opposite, and the nearer of both: beside homoclinic orbits it is known to few digits.
+        The image of a single null vector is the vector or its opposite; the nearer one is taken, as beside homoclinic orbits it has few digits.
         """
         if event.kind != "branch-point":
             return event.kind
@@ -145,7 +163,10 @@ class _Marking(NamedTuple):
         return event.kind
 
     def known(self, event: Located, kind: str, at_end: bool) -> str | None:
-        """Label of the special point that an event is, if that is known already."""
+        """Return the label of a known special point that is the same as an event; None if there is none.
+
+        `at_end` says that the event is at an end of the branch: borders are then compared with those that lead to this branch.
+        """
         run, engine, problem, point = self.run, self.engine, self.engine.problem, event.point
         special, pending, unit = run.graph.special, self.pending, run.unit(event.point.p)
         if kind == "end":
@@ -156,7 +177,7 @@ class _Marking(NamedTuple):
                 gaps = np.abs(self.branch.values[[0, -1]] - source.value)
                 home = (
                     abs(source.value - point.p) <= gaps.min()
-                )  # the other end is a border of its own, however near
+                )  # False if the other end of the branch is nearer to the source: this end is another border
                 if home and is_border(run, problem, event, source.label):
                     return source.label
             for other in run.queue:
@@ -182,13 +203,16 @@ class _Marking(NamedTuple):
                 places = Place(known.value, known.location_error), Place(float(point.p), event.error)
                 if same_value(*places, unit, run.settings.same):
                     beside.append((abs(known.value - point.p), known.label))
-        # one point seen in two problems, whose forms need not agree: the nearest of those whose values agree as far as they are known
+        # one point of two problems, whose canonical forms may differ: the nearest of those with the same value within the errors
         return min(beside)[1] if beside else None
 
     def special(
         self, label: str, kind: str, event: Located, index: int, known: SpecialPoint | None = None
     ) -> SpecialPoint:
-        """A point that has no label yet, or in the place of one that was `known` from a branch of less symmetric solutions."""
+        """Make a special point and add it to the graph.
+
+        `known` is the same point found before from a branch of less symmetric solutions; it is replaced.
+        """
         run, branch, engine, point = self.run, self.branch, self.engine, event.point
         margins, problem = float(engine.smallest_margin(point.row)), engine.problem
         special = SpecialPoint(
@@ -214,7 +238,7 @@ class _Marking(NamedTuple):
         special.replay = partial(_replay, problem, special.u, special.value) if special.real else None
         if kind != "end":
             special.location_error = max(_errors(engine, special))
-            wrong = problem.check(special.u, special.value)  # whether given derivatives are right here
+            wrong = problem.check(special.u, special.value)  # are the given derivatives right here?
             if wrong is not None:
                 special.remarks, special.location_error = (str(wrong),), float("inf")
         if event.role is Role.MEETING:
@@ -228,7 +252,7 @@ class _Marking(NamedTuple):
         return special
 
     def ending(self, label: str, kind: str, event: Located) -> Ending:
-        """The end of the branch at a special point."""
+        """Return the ending of the branch at a special point."""
         known = self.run.graph.special[label]
         own = known.branch == self.branch.label
         if event.role is Role.MEETING:
@@ -240,14 +264,14 @@ class _Marking(NamedTuple):
 
 
 def _met(ending: Ending, label: str, owner: str) -> Ending:
-    """An ending at a point of more symmetric solutions, whose branch is known now."""
+    """Return an ending with the branch of more symmetric solutions, now known, if it lies at this point."""
     if ending.reason is Reason.COMES_BACK and ending.point == label:
         return replace(ending, reason=Reason.MEETS_SYMMETRIC, other=owner)
     return ending
 
 
 def _errors(engine: Engine, special: SpecialPoint) -> list[float]:
-    """Errors of the location: of finding the zero, of the equations, of their mesh, of a matrix that is singular there."""
+    """Return the errors of a location: of the zero, of the equations, of their mesh, of a singular matrix."""
     problem, unit = engine.problem, engine.parameter_unit(special.value)
     errors = [special.location_error, problem.uncertainty() * unit]
     if isinstance(problem, Adaptive):
@@ -265,14 +289,14 @@ def _errors(engine: Engine, special: SpecialPoint) -> list[float]:
 
 
 def _replay(problem: Problem, u: np.ndarray, p: float) -> float | None:
-    """Deviation of a simulation from the solution; None where there is none."""
+    """Return the deviation of a simulation from the solution; None for problems without simulation."""
     with OPEN:
         error = problem.replay(u, p)
     return None if error is None else float(error)
 
 
 def origin_index(half: HalfBranch, pending: Pending) -> int | None:
-    """Index of the special point from which the branch was reached, if it is one of its points."""
+    """Return the index of the special point from which the branch was reached, if it is one of its points, else None."""
     if pending.origin is None:
         return None
     whole = half.joined()
@@ -282,16 +306,16 @@ def origin_index(half: HalfBranch, pending: Pending) -> int | None:
     return None
 
 
-# ------------------------------------------------------------------ what is not resolved
+# ------------------------------------------------------------------ unresolved stretches
 def _accuracy(engine: Engine, point: Solved) -> float:
-    """How well the equations know the parameter at a point."""
+    """Return the error of the parameter at a point, from the equations and their mesh."""
     problem = engine.problem
     own = problem.accuracy(point.u, point.p) if isinstance(problem, Adaptive) else 0.0
     return max(own, problem.uncertainty()) * engine.parameter_unit(point.p)
 
 
 class _Place(NamedTuple):
-    """A special point, or a stretch that is not resolved: its index on the branch, values between which it lies, and the error of these."""
+    """A special point or an unresolved stretch: its index on the branch, its interval of parameter values, and their error."""
 
     at: int
     low: float
@@ -301,9 +325,18 @@ class _Place(NamedTuple):
 
 
 def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, float]]) -> list[Unresolved]:
-    """What is not resolved: stretches, those that are one as far as their values are known joined, and special points that cannot be told apart.
+    """Return the unresolved stretches of a branch, and those between special points that cannot be distinguished.
 
-    Solutions between places whose values are one, or between which no solution could be put, count as unstable where those on both sides are.
+    Stretches whose values are equal within their errors are joined. Solutions between points with equal values, or without a solved point between
+    them, count as unstable if those on both outer sides are.
+
+    Parameters
+    ----------
+    run : Run
+    branch : Branch
+        Its stability may be changed.
+    stretches : list of (Unresolved, float)
+        Stretches found by detection, and the error of their values.
     """
     points = [(i, run.graph.special[label]) for i, label in branch.marks]
     places = [_Place(i, point.value, point.value, point.location_error, point) for i, point in points]
@@ -339,7 +372,7 @@ def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, floa
 
 
 def _may_hide(one: _Place, other: _Place) -> bool:
-    """Whether solutions between two places may be stable although those on both sides are not."""
+    """Whether solutions between two places may be stable although those on both outer sides are not."""
     if isinstance(one.what, SpecialPoint) and isinstance(other.what, SpecialPoint):
         return a_sliver((one.what.kind,), (other.what.kind,))
     return True

@@ -1,4 +1,4 @@
-"""Borders: which are one, as a border is seen from both its sides, with different words, and others may be very near; and what lies beyond."""
+"""Borders: match a border that is reached from both sides, with different words, and find the solutions beyond it."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
 def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
-    """Whether a branch has come to a border that is known by this label."""
+    """Whether a border found on a branch of `problem` is the same as the known one with this label."""
     known, point = run.graph.special[label], event.point
     here, there = Place(point.p, event.error), Place(known.value, known.location_error)
     if not same_value(here, there, run.unit(point.p), run.settings.same):
         return False
-    # of a branch that begins at a border it is asked twice: whether to keep it, and how to mark its end
+    # results are stored: a branch that begins at a border is tested twice, before it is kept and when its end is labelled
     key = id(point.u), id(known)
     if key not in run.compared:
         run.compared[key] = (point, known, may_be_one(problem, point.u, point.p, known, run.settings.same))
@@ -38,7 +38,7 @@ def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
 
 
 def same_border(run: Run, label: str, known: Branch) -> str:
-    """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
+    """Merge a border with that of the known branch beyond it, if both are the same point; return the label that remains."""
     graph = run.graph
     here = graph.special[label]
     engine = run.engine(known.attached)
@@ -55,12 +55,13 @@ def same_border(run: Run, label: str, known: Branch) -> str:
 
 
 def _in_one_place(run: Run, one: SpecialPoint, other: SpecialPoint) -> bool:
+    """Whether two special points have the same parameter value within their errors."""
     here, there = Place(one.value, one.location_error), Place(other.value, other.location_error)
     return same_value(here, there, run.unit(one.value), run.settings.same)
 
 
 def tie_borders(run: Run) -> None:
-    """One border that was reached from two branches, and crossed from neither, gets one label; the branches are tied."""
+    """Give one label to borders that were reached from two branches, and crossed from neither, and connect the branches."""
     graph = run.graph
     for label in list(graph.special):
         point = graph.special.get(label)
@@ -73,7 +74,7 @@ def tie_borders(run: Run) -> None:
             if not (near and _in_one_place(run, point, other)):
                 continue
             if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):
-                continue  # its branch was reached through the other one: this is the far end of a very short branch
+                continue  # the branch was reached through the other border: this is the far end of a very short branch
             if other.problem is not None and point.attached.same_motion(
                 point.u, point.value, other.problem, other.u
             ):
@@ -82,18 +83,29 @@ def tie_borders(run: Run) -> None:
                 break
 
 
-# ------------------------------------------------------------------ what lies beyond
+# ------------------------------------------------------------------ solutions beyond
 def cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
-    """Queue the solutions on the other side of a border, and with ``virtual`` the rest of the branch itself."""
+    """Queue the solutions on the other side of a border; with ``virtual``, also the continuation of the branch itself.
+
+    Parameters
+    ----------
+    run : Run
+    point : SpecialPoint
+        The border.
+    branch : Branch
+        The branch that ends there.
+    depth : int
+        Number of switches used for this branch.
+    """
     leaving = point
     if point.index == 0:
-        leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
+        leaving = copy.copy(point)  # `dataclasses.replace` would compute the deferred fields
         leaving.tangent = -point.tangent
     outward, queued = leaving.tangent, list[Pending]()
     if branch.real:
         seeds = _seeds(run, leaving, depth < run.depth)
         for seed in seeds:
-            # a branch that goes on in the same direction is as deep, another one is a switch deeper
+            # persistence uses no switch, a nonsmooth fold uses one
             deep = depth + (0 if seed.persistence else 1)
             if deep <= run.depth:
                 u = np.asarray(seed.u, dtype=float)
@@ -111,7 +123,7 @@ def cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         border, z = engine.weights * outward, engine.join(point.u, point.value)
         origin = engine.polish(point.u, point.value, border, float(border @ z), outward)
         if origin is not None:
-            origin = origin._replace(tangent=engine.unit(outward))  # solved for, it may be rounding
+            origin = origin._replace(tangent=engine.unit(outward))  # the solved tangent may be rounding
         rest = Pending(point.attached, point.u, point.value, outward, Origin.REST, depth, origin=origin)
         rest.note, rest.real = "virtual" if branch.real else "real again", not branch.real
         queued.append(rest)
@@ -121,12 +133,15 @@ def cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 
 def tell_dead_end(run: Run, point: SpecialPoint) -> None:
-    """Say why nothing goes on at a border."""
+    """Add the problem's explanation why no solution continues at a border as a remark."""
     run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.attached.dead_end, point), ""))
 
 
 def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[Seed]:
-    """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
+    """Compute the solutions beyond a border, or recall them from the journal.
+
+    Unless `every`, problems that can (`Onward`) first look for solutions that continue the branch, and for others only if there are none.
+    """
     problem = point.attached
     onward = problem.onward if isinstance(problem, Onward) and not every else None
     key = f"{run.serial}/{'beyond' if onward is None else 'onward'}/{point.label}"
@@ -144,7 +159,7 @@ def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[Seed]:
 
 
 def _recorded(seeds: list[Seed]) -> dict[str, Any]:
-    """Seeds as a journal keeps them."""
+    """Return seeds as a record of a journal."""
     record: dict[str, Any] = {
         "problems": [dict(seed.problem.describe()) for seed in seeds],
         "p": [float(seed.p) for seed in seeds],
@@ -159,7 +174,7 @@ def _recorded(seeds: list[Seed]) -> dict[str, Any]:
 
 
 def _rebuilt(record: Mapping[str, Any] | None) -> list[Seed] | None:
-    """The seeds of a journal's record; None where a problem cannot be obtained from it, and is asked for again."""
+    """Rebuild seeds from a journal's record; None without a record, or if a problem cannot be rebuilt, so that they must be computed again."""
     if record is None:
         return None
     seeds = []

@@ -1,6 +1,6 @@
-"""A graph as named entries of arrays and JSON values, and back: what the store writes and reads.
+"""Conversion of a graph to named entries of arrays and JSON values, which the store writes, and back.
 
-What was read is checked to be what this program writes: types by the annotations of the dataclasses, labels, lengths of arrays.
+Entries that were read are checked: types by the annotations of the dataclasses, labels, lengths of arrays.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ if TYPE_CHECKING:
 
 Entry = tuple[str, str, dict[str, Any]]
 
-DEEPEST = 60  # levels of nested values
+DEEPEST = 60  # largest number of levels of nested values
 _MEMBERS = ("branches", "special", "switches", "proofs", "attractors", "missing", "unresolved")
 
 
 def fields_of(thing: DataclassInstance, *apart: str) -> dict[str, Any]:
-    """The fields of a dataclass by name, but for those apart."""
+    """Return the fields of a dataclass by name, except those in `apart`."""
     return {f.name: getattr(thing, f.name) for f in fields(thing) if f.name not in apart}
 
 
 def graph_entries(graph: Graph) -> Iterator[Entry]:
-    """The graph as (kind, key, content): one "graph", then every "branch", "special" and "switch" in order."""
+    """Generate the entries of a graph as (kind, key, content): one "graph", then "branch", "special", ... and "switch", in order."""
     yield "graph", "graph", fields_of(graph, *_MEMBERS)
     for branch in graph.branches.values():
         yield "branch", branch.label, content_of(branch)
@@ -65,13 +65,16 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
 def graph_from_entries(
     entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True, trust: bool = False
 ) -> Graph:
-    """The graph that `graph_entries` took apart.
+    """Rebuild a graph from the entries of `graph_entries`.
 
     Parameters
     ----------
-    entries : contents by kind and key, in the order in which they were written.
-    problems : rebuild the problems of the branches, so that orbits and measures can be obtained.
-    trust : import functions of the user's that the branches name (see :mod:`contvines.problems.registry`).
+    entries : mapping
+        kind -> key -> content, in the order in which they were written.
+    problems : bool
+        Rebuild the problems of the branches, too, so that orbits and measures can be computed.
+    trust : bool
+        Import user functions that the entries name; see :mod:`contvines.problems.registry`.
 
     Raises
     ------
@@ -102,21 +105,21 @@ def graph_from_entries(
 
 
 def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
-    """The branch that `content_of` took apart."""
+    """Rebuild a branch from the result of `content_of`."""
     own = dict(content)
     own["endings"] = _pair(
-        [Ending.said(text) for text in own.pop("ended")]  # version 0.1 kept the sentences
+        [Ending.said(text) for text in own.pop("ended")]  # files of version 0.1 have sentences
         if "ended" in own
         else [Ending.from_dict(ending) for ending in own["endings"]]
     )
     if own["description"].get("spectrum") == "none":
-        own["stable"] = None  # files up to 0.1 called it unstable
+        own["stable"] = None  # "unstable" in files up to version 0.1
     own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
     return Branch(problem=problem, **own)
 
 
 def content_of(thing: DataclassInstance) -> dict[str, Any]:
-    """A branch or special point as arrays and JSON values, its problem apart."""
+    """Return a branch or special point as arrays and JSON values, without its problem."""
     content = fields_of(thing, "problem", "own_kind")
     if "endings" in content:
         content["endings"] = [ending.to_dict() for ending in content["endings"]]
@@ -129,7 +132,7 @@ def _pair(values: Iterable) -> tuple:
 
 
 def _problem(description: dict[str, Any], built: dict[str, Any], trust: bool) -> Problem | None:
-    """The problem that a description names, once per description; None if it cannot or must not be rebuilt."""
+    """Return the problem of a description, built once per description; None if it cannot or must not be rebuilt."""
     key = json.dumps(description, sort_keys=True, default=str)
     if key not in built:
         try:
@@ -140,7 +143,7 @@ def _problem(description: dict[str, Any], built: dict[str, Any], trust: bool) ->
 
 
 def same_graph(one: Graph, other: Graph) -> bool:
-    """Whether two graphs hold the same numbers, bit for bit, problems aside."""
+    """Whether two graphs are equal, bit for bit, apart from their problems."""
     mine, theirs = list(graph_entries(one)), list(graph_entries(other))
     return len(mine) == len(theirs) and all(
         a[:2] == b[:2] and a[2].keys() == b[2].keys() and all(_equal(a[2][k], b[2][k]) for k in a[2])
@@ -149,6 +152,7 @@ def same_graph(one: Graph, other: Graph) -> bool:
 
 
 def _equal(a: object, b: object) -> bool:
+    """Whether two values are equal, bit for bit; NaN equals NaN."""
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return (
             isinstance(a, np.ndarray)
@@ -168,9 +172,9 @@ Entries = Mapping[str, Mapping[str, dict[str, Any]]]
 
 
 def renamed(entries: Entries) -> Entries:
-    """Entries of a graph or chart with today's kinds and labels; those of today's files as they are.
+    """Convert kinds and labels of entries from old files to the current ones; entries of current files are returned unchanged.
 
-    Labels of points of codimension two, among which CH is Chenciner, stay.
+    Labels of points of codimension two are not changed, as CH is Chenciner there.
     """
     labels: dict[str, str] = {}
     for group in ("special", "locus"):
@@ -192,6 +196,7 @@ def renamed(entries: Entries) -> Entries:
 
 
 def _content(group: str, content: dict[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
+    """Return the content of an entry with current kinds and labels."""
     if group == "plane-point":
         return {**content, "on": _relabelled(content["on"], labels)}
     if group in ("attractor", "missing") or not isinstance(content, Mapping):
@@ -207,6 +212,7 @@ def _content(group: str, content: dict[str, Any], labels: Mapping[str, str]) -> 
 
 
 def _relabelled(value: object, labels: Mapping[str, str]) -> object:
+    """Return a nested value with current kinds and labels."""
     if isinstance(value, str):
         return labels.get(value, value)
     if isinstance(value, list | tuple):
@@ -221,18 +227,18 @@ def _relabelled(value: object, labels: Mapping[str, str]) -> object:
     return value
 
 
-# ------------------------------------------------------------------ whether it is one of ours
+# ------------------------------------------------------------------ checks of entries that were read
 class OtherEquations(ValueError):
-    """A branch whose points have another number of unknowns than its problem: an older version had other equations for it."""
+    """Raised if a branch and its problem have different numbers of unknowns: an older version used other equations."""
 
 
 def check_graph(graph: Graph) -> None:
-    """Refuse a graph that cannot be shown.
+    """Check that a graph is complete and consistent.
 
     Raises
     ------
     ValueError
-        The sentence names the entry and the field.
+        If it is not; the message names the entry and the field.
     """
     check_fields("the graph", graph)
     for label, branch in graph.branches.items():
@@ -266,11 +272,12 @@ def check_graph(graph: Graph) -> None:
 
 
 def check_branch(label: str, branch: Branch) -> None:
-    """Refuse a branch that cannot be shown, or whose label is not the one under which it was kept.
+    """Check a branch: types of fields, shapes of arrays, marks, and its label against that of the entry.
 
     Raises
     ------
     ValueError
+        If something is wrong; `OtherEquations` if the problem has another number of unknowns.
     """
     check_fields(label, branch)
     _own_label(label, branch.label)
@@ -294,11 +301,12 @@ def check_branch(label: str, branch: Branch) -> None:
 
 
 def check_fields(label: str, thing: DataclassInstance) -> None:
-    """Refuse an instance of a dataclass with a field that is not of its type.
+    """Check that all fields of a dataclass have the annotated types.
 
     Raises
     ------
     ValueError
+        If one has not; the message names it.
     """
     hints = _hints(type(thing))
     for field in fields(thing):
@@ -309,7 +317,8 @@ def check_fields(label: str, thing: DataclassInstance) -> None:
 
 @cache
 def _hints(kind: type) -> dict[str, Any]:
-    from pathlib import Path  # named in annotations only
+    """Return the annotations of a dataclass as types, by field."""
+    from pathlib import Path  # for annotations
 
     return get_type_hints(
         kind,
@@ -324,11 +333,11 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def fits(value: object, hint: object) -> bool:
-    """Whether a value has the type of an annotation; numbers that are no numbers or infinite count as numbers."""
+    """Whether a value has the type of an annotation; NaN and infinity count as floats."""
     kind, parts = get_origin(hint) or hint, get_args(hint)
     if kind in (Union, UnionType):
         return any(fits(value, part) for part in parts)
-    if kind in (Any, Problem, Kind):  # what a file cannot hold is none of its
+    if kind in (Any, Problem, Kind):  # Problem and Kind are not stored in files
         return _plain(value)
     if kind is Later:
         return value is None or fits(value, float)
@@ -356,7 +365,7 @@ def fits(value: object, hint: object) -> bool:
 
 
 def _finite_size(value: float) -> bool:
-    """Whether a whole number fits a float."""
+    """Whether an integer can be converted to a float."""
     try:
         float(value)
     except OverflowError:
@@ -365,7 +374,7 @@ def _finite_size(value: float) -> bool:
 
 
 def _plain(value: object, levels: int = DEEPEST) -> bool:
-    """Whether a value of any type is nested so little that it can be written and compared."""
+    """Whether a value is nested at most `levels` deep, so that it can be written and compared."""
     if isinstance(value, Mapping):
         return levels > 0 and all(_plain(v, levels - 1) for v in value.values())
     if isinstance(value, list | tuple):
@@ -374,11 +383,13 @@ def _plain(value: object, levels: int = DEEPEST) -> bool:
 
 
 def _own_label(key: str, label: str) -> None:
+    """Check that a label is the key of its entry."""
     if key != label:
         raise ValueError(f"{key}: its label is {label!r}")
 
 
 def _shaped(label: str, thing: DataclassInstance, **dimensions: int) -> None:
+    """Check that arrays, by field, are numeric and have the given number of dimensions."""
     for name, dimension in dimensions.items():
         array = getattr(thing, name)
         numbers = array.dtype.kind in ("fc" if name == "multipliers" else "fi")

@@ -1,4 +1,4 @@
-"""Proofs of what a graph holds, by its labels: the problems prove, the graph keeps claims and certificates."""
+"""Proofs of a graph's points, orbits and branches, by label: the problems prove, the graph stores claims and certificates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Proof(Protocol):
-    """A proof of a special point, a solution or a branch."""
+    """Protocol of a proof of a special point, a solution or a branch."""
 
     @property
     def existence(self) -> bool: ...
@@ -29,7 +29,7 @@ class Proof(Protocol):
 
 
 class Piece(Protocol):
-    """What is proved of a stretch of a branch."""
+    """Protocol of the proved claims on a stretch of a branch."""
 
     @property
     def covered(self) -> tuple[float, float] | None: ...
@@ -43,7 +43,7 @@ class Piece(Protocol):
 
 @runtime_checkable
 class OfBranch(Proof, Protocol):
-    """A proof of a branch: of stretches between its points."""
+    """Protocol of a proof of a branch: pieces, and the indices of the points between which they lie."""
 
     @property
     def pieces(self) -> Sequence[Piece]: ...
@@ -53,18 +53,20 @@ class OfBranch(Proof, Protocol):
 
 @runtime_checkable
 class Subject(Protocol):
-    """What can be proved."""
+    """Protocol of an object that can be proved."""
 
     def prove(self, **options: Any) -> Proof: ...
 
 
 def subject(graph: Graph, label: str) -> object:
-    """What a label names: a special point, a branch, or with a colon one solution of a branch (``B1:12``).
+    """Return the object with a label: a special point, a branch, or with a colon one solution of a branch (``B1:12``).
 
     Raises
     ------
-    KeyError, ValueError
-        If there is none, or it cannot be proved.
+    KeyError
+        If the graph has no such label.
+    ValueError
+        If the branch has no such point.
     """
     name, _, place = label.partition(":")
     thing = graph[name]
@@ -82,17 +84,26 @@ def subject(graph: Graph, label: str) -> object:
 
 
 def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str, Any]:
-    """Prove special points, solutions (``B1:12``) or whole branches; without labels every special point.
+    """Prove special points, solutions (``B1:12``) or whole branches; without labels all special points.
+
+    Parameters
+    ----------
+    graph : Graph
+    labels : iterable of str
+    **options
+        Arguments of the subjects' ``prove``.
 
     Returns
     -------
     dict
-        The proofs by label; claims and certificates are kept in ``graph.proofs`` as well.
+        The proofs by label; claims and certificates are stored in ``graph.proofs``, too.
 
     Raises
     ------
-    ValueError, KeyError
-        If a label is unknown, or its problem has no proofs.
+    KeyError
+        If a label is unknown.
+    ValueError
+        If a problem has no proofs, or a branch has no such point.
     """
     wanted = list(labels) or list(graph.special)
     subjects: dict[str, Subject] = {}
@@ -112,7 +123,7 @@ def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str,
 
 
 def kept(proof: Proof) -> dict[str, Any]:
-    """What is kept of a proof: its claims, and the certificate where there is one."""
+    """Return the stored part of a proof: its claims, and the certificate if there is one."""
     parts = (
         [_stretch(*part) for part in zip(proof.pieces, proof.places)] if isinstance(proof, OfBranch) else []
     )
@@ -128,7 +139,7 @@ def kept(proof: Proof) -> dict[str, Any]:
 
 
 def _stretch(piece: Piece, places: tuple[int, int]) -> dict[str, Any]:
-    """What is proved of a stretch of a branch, between two of its points."""
+    """Return the claims on a stretch of a branch, between two of its points, as a dict."""
     return {
         "between": list(places),
         "covered": [float(value) for value in piece.covered] if piece.covered else None,

@@ -28,20 +28,20 @@ if TYPE_CHECKING:
     from ..journal import Journal
 
 
-LARGE = 64  # unknowns from which a point takes longer the more it has
-LOCATED = 40  # points that take as long as a special point of cycles on a mesh: located, solved on a finer one, and left
+LARGE = 64  # number of unknowns above which the cost of a point grows with their number
+LOCATED = 40  # cost, in points, of a special point of cycles on a mesh: location, solution on a finer mesh, switching
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Functions at whose zeros branches end, and the bounds that some of them stand for.
+    """Functions at whose zeros branches end, bounds of measures included.
 
     Attributes
     ----------
     functions : dict
         name -> callable (u, p) -> float, or (measure, value).
     bounds : dict
-        name of a measure -> (low, high).
+        name of a measure -> (low, high); each finite bound is also one of the functions.
     """
 
     functions: dict[str, Any] = field(default_factory=dict)
@@ -54,7 +54,7 @@ class Limits:
         bounds: Mapping[str, tuple[float, float]] | None,
         problem: Problem,
     ) -> Limits:
-        """From what a user gives.
+        """Check the user's arguments and return the limits.
 
         Parameters
         ----------
@@ -63,12 +63,12 @@ class Limits:
         bounds : mapping, optional
             measure -> (low, high); either may be infinite or None.
         problem : Problem
-            Its measures may have bounds.
+            Problem whose measures may have bounds.
 
         Raises
         ------
         ValueError
-            If a bound is no pair of numbers, the first one smaller, or there is no such measure.
+            If a bound is no pair of increasing numbers, or there is no such measure.
         """
         functions, pairs = dict(stop or {}), {}
         for name, pair in (bounds or {}).items():
@@ -93,14 +93,14 @@ class Limits:
         return cls(functions, pairs)
 
     def kept(self) -> dict[str, Any]:
-        """What a graph keeps of them among its settings, JSON-able: the bounds."""
+        """Return the bounds as a JSON-able dict for the settings of a graph."""
         pairs = {
             name: [end if math.isfinite(end) else None for end in pair] for name, pair in self.bounds.items()
         }
         return {"bounds": pairs} if pairs else {}
 
     def outside(self, problem: Problem, u: np.ndarray, p: float) -> str:
-        """A sentence on the first bound beyond which a solution lies; empty if it lies within all."""
+        """Return a sentence on the first bound that a solution violates; empty if it lies within all."""
         for name, (low, high) in self.bounds.items():
             value = float(problem.measures((name,), np.atleast_2d(u), np.array([p]))[name][0])
             if not low <= value <= high:
@@ -112,41 +112,42 @@ NO_LIMITS = Limits()
 
 
 class Origin(StrEnum):
-    """From what a branch is reached."""
+    """How a branch was reached."""
 
-    START = "start"  # of the diagram: both ways
-    SWITCH = "switch"  # the first points of a departure from a branch point
-    BORDER = "border"  # a solution on the other side of a border: both ways
-    ROOT = "root"  # a more symmetric solution to which a side branch has come back: both ways
-    REST = "rest"  # a border, beyond which the same equations go on: one way
+    START = "start"  # the start of the diagram: followed in both directions
+    SWITCH = "switch"  # first points of a branch that leaves a special point
+    BORDER = "border"  # a solution on the other side of a border: followed in both directions
+    ROOT = "root"  # a more symmetric solution that a side branch has met: followed in both directions
+    REST = "rest"  # the same equations beyond a border: followed in one direction
 
 
 @dataclass
 class Pending:
-    """A branch that is waiting to be traced.
+    """A branch that waits to be traced.
 
     Attributes
     ----------
     problem : Problem
     u, p : ndarray, float
-        Where to begin.
+        Start, or a guess of it.
     tangent : ndarray or None
+        Tangent at the start.
     kind : Origin
     depth : int
-        Switches used so far.
+        Number of switches used so far.
     source : str or None
         Label of the branch from which it was reached.
     point : str or None
         Label of the special point at which it was reached.
     note : str
-        For the switch.
+        Note of the switch.
     real : bool or None
-        None: the margins decide.
+        Whether the branch is real; None if its margins decide.
     origin, ahead, back : Solved or None
-        Of a departure.
+        The special point, and the first points of a departure; for REST the border.
     first_step : float or None
     reached : bool
-        A branch of these solutions was traced in the meantime: it has come to the border from the other side.
+        True if a branch of these solutions has been traced in the meantime: it has reached the border from the other side.
     """
 
     problem: Problem
@@ -170,19 +171,20 @@ Found = TypeVar("Found")
 
 
 class Left(NamedTuple):
-    """What is left of an atlas, as far as that is known."""
+    """State of an atlas's work."""
 
     budget: float
-    """Share that is used."""
+    """Used share of the budget."""
     done: int
+    """Number of pieces of work that are done."""
     known: int
-    """Pieces of work, those done included."""
+    """Number of pieces of work known so far, those done included."""
     seconds: float
-    """Estimate of the time that the others will take; NaN where none is done."""
+    """Estimated time for the others; NaN if none is done."""
 
 
 class Progress(NamedTuple):
-    """Where a run is: a sentence, and how much there is so far."""
+    """Progress of a run: a sentence and counts."""
 
     message: str
     branches: int
@@ -191,11 +193,11 @@ class Progress(NamedTuple):
     value: float
     waiting: int
     left: Left | None = None
-    """Of an atlas."""
+    """State of an atlas's work; None for a diagram."""
 
     @property
     def sentence(self) -> str:
-        """All of it in one line."""
+        """The progress in one line."""
         said = (
             f"{self.message}  |  {self.branches} branch{'' if self.branches == 1 else 'es'}, {self.special} special points, "
             f"{self.points} points, {self.waiting} waiting"
@@ -207,7 +209,7 @@ class Progress(NamedTuple):
 
 @dataclass(eq=False)
 class Run:
-    """Graph, queue, register of known branches, labels.
+    """State of a run: graph, queue, register of known branches, labels.
 
     Attributes
     ----------
@@ -216,23 +218,41 @@ class Run:
     settings : Settings
     journal : Journal
     depth : int
+        Largest number of switches.
     virtual : bool
+        Whether branches are followed beyond borders.
     user_functions : mapping or None
     progress : callable or None
+        Called with each `Progress`.
     limits : Limits
-        Where branches end because the user says so.
+        Functions at whose zeros branches end.
     kinds : sequence of Kind
-        What is looked for.
+        Kinds of special points to find.
     left : callable or None
-        What is left of an atlas.
+        Returns the state of an atlas's work.
     over : callable
-        Whether no further branch may leave another one, of an atlas.
+        Returns True if an atlas must not follow further branches.
     narrowest : float
-        So near to a homoclinic orbit nothing that leaves a branch is followed.
-    events : dict of Located
-        By label, of special points that were found in this run.
+        Branches that leave others nearer than this to a homoclinic orbit, in the parameter, are not followed.
+    serial : int
+        Number of the current branch in the journal's entries.
+    points : int
+        Number of points so far.
     cost : int
-        Points, those of many unknowns as often as they have `LARGE`; of cycles special points as well.
+        Cost so far, in points: one with many unknowns counts as unknowns / `LARGE` points, a special point of cycles as `LOCATED` points.
+    queue : deque of Pending
+    register : Register
+        Known branches.
+    numbers : dict of int
+        Last number of the labels, by prefix.
+    events : dict of Located
+        Located events of the special points found in this run, by label.
+    detectors : dict of Detector
+        By the id of the problem.
+    forms : dict
+        Canonical forms of special points, by label.
+    compared : dict
+        Results of comparisons of borders.
     """
 
     graph: Graph
@@ -275,17 +295,17 @@ class Run:
             )
 
     def checkpoint(self) -> None:
-        """Keep the graph as it is now."""
+        """Store the current graph in the journal."""
         self.journal.checkpoint(self.graph)
 
     def unit(self, p: float) -> float:
-        """What differences of the parameter near p are compared with: see :func:`parameter_unit`."""
+        """Return the unit of parameter differences near p; see :func:`contvines.continuation.engine.parameter_unit`."""
         for detector in self.detectors.values():
             return detector.engine.parameter_unit(p)
         return parameter_unit(self.graph.within, p)
 
     def detector(self, problem: Problem) -> Detector:
-        """Detector of a problem, made once."""
+        """Return the detector of a problem, made once."""
         if id(problem) not in self.detectors:
             functions = {**(self.user_functions or {}), **self.limits.functions}
             engine = Engine(problem, self.graph.within, self.settings)
@@ -295,15 +315,15 @@ class Run:
         return self.detectors[id(problem)]
 
     def engine(self, problem: Problem) -> Engine:
-        """Engine of a problem, made once."""
+        """Return the engine of a problem, made once."""
         return self.detector(problem).engine
 
     def kind(self, name: str) -> Kind:
-        """The kind of this name among those that are looked for, or of the built-in ones."""
+        """Return the kind of this name: one of the run's kinds, or a built-in one."""
         return kind_named(name, {kind.name: kind for kind in self.kinds})
 
     def new_label(self, prefix: str) -> str:
-        """The next label with this prefix; labels that the graph has already are passed over."""
+        """Return the next label with this prefix that the graph does not have yet."""
         while True:
             self.numbers[prefix] = self.numbers.get(prefix, 0) + 1
             label = f"{prefix}{self.numbers[prefix]}"
@@ -311,7 +331,7 @@ class Run:
                 return label
 
     def connect(self, point: str | None, source: str | None, target: str, note: str = "") -> None:
-        """Add a switch unless these two branches are already tied at this point."""
+        """Add a switch unless these two branches are already connected at this point."""
         if point is None or source is None:
             return
         for known in self.graph.switches:
@@ -320,14 +340,14 @@ class Run:
         self.graph.switches.append(Switch(point, source, target, self.graph.special[point].kind, note))
 
     def form(self, point: SpecialPoint) -> tuple[Hashable, np.ndarray]:
-        """Canonical form of a special point, computed once."""
+        """Return the canonical form of a special point, computed once."""
         known = self.forms.get(point.label)
         if known is None or known[0] is not point:
             known = self.forms[point.label] = (point, point.attached.canonical(point.u, point.value))
         return known[1]
 
     def merge(self, label: str, into: str) -> None:
-        """Two labels turn out to be one special point: the second one stays."""
+        """Merge two special points that are the same; the label `into` remains."""
         graph = self.graph
         for branch in graph.branches.values():
             if any(mark == label for _, mark in branch.marks):
@@ -346,7 +366,7 @@ class Run:
         del graph.special[label]
 
     def _tied(self, ending: Ending, label: str, into: str) -> Ending:
-        """An ending at a point that turns out to be another one, on another branch."""
+        """Return an ending at a point that has been merged into another one."""
         if ending.point != label:
             return ending
         if ending.reason is Reason.REACHES:
@@ -354,7 +374,7 @@ class Run:
         return replace(ending, point=into)
 
     def attempt(self, label: str, what: str, work: Callable[[], Found], otherwise: Found) -> Found:
-        """Result of work at a special point; if it fails, the point's remarks name the error, and the graph goes on.
+        """Return the result of work at a special point; if it fails, add a remark with the error to the point, and return `otherwise`.
 
         Parameters
         ----------
@@ -363,13 +383,14 @@ class Run:
         what : str
             Name of the work, for the remark.
         work : callable
+            Without arguments.
         otherwise : object
-            Result of work that fails.
+            Result if the work fails.
 
         Raises
         ------
         KeyboardInterrupt, MemoryError, OSError
-            As the work does: these are no failures of one point.
+            Passed on from the work, as they do not concern a single point.
         """
         try:
             with OPEN:

@@ -1,4 +1,4 @@
-"""Leaving: what to trace next from a special point."""
+"""Schedule branches: compute the first points of the branches that leave a special point, and queue them."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from . import Graph
 from .match_borders import cross
 from .run import Origin, Pending, Run
 
-DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
-WHOLE = 1.0  # amplitude, in units of the scales, of cycles as large as these
-SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there
-HALVINGS = 4  # of the amplitude, until a cycle is found beside a Hopf point
+DERIVATIVES = 50  # up to this number of unknowns coefficients are computed from derivatives, not from the leaving branch
+WHOLE = 1.0  # largest amplitude of first cycles beside a Hopf point, in units of the scales
+SLANTED = 0.1  # slope of the parameter per amplitude, in its unit, from which a branch crosses a point without turning
+HALVINGS = 4  # number of amplitudes that are tried for a cycle beside a Hopf point
 
 FAMILY = (
     "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
@@ -39,11 +39,21 @@ SWITCHING = "the search for branches that leave here"
 BESIDE_HOMOCLINIC = "the branch that leaves here is not followed: within {narrowest:.1e} of {orbit}, a homoclinic orbit, an atlas follows none"
 
 Search = Callable[[float], list[Departure]]
-"""The branches that leave, from first points at an amplitude."""
+"""Function: amplitude of the first points -> branches that leave."""
 
 
 def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
-    """Queue the branches that leave a special point, as far as the depth allows."""
+    """Queue the branches that leave a special point, as far as the run's depth allows.
+
+    Parameters
+    ----------
+    run : Run
+    point : SpecialPoint
+    branch : Branch
+        Branch on which the point lies.
+    depth : int
+        Number of switches used for this branch.
+    """
     if point.kind in BORDERS:
         cross(run, point, branch, depth)
         return
@@ -59,7 +69,7 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 
 def why_nothing_leaves(graph: Graph, label: str) -> str:
-    """A sentence on a special point from which no new branch leaves."""
+    """Return a sentence why no new branch leaves a special point."""
     point = graph.special[label]
     known = [
         end for s in graph.switches if s.point == label for end in (s.source, s.target) if end != point.branch
@@ -75,16 +85,19 @@ def why_nothing_leaves(graph: Graph, label: str) -> str:
 
 
 class _Leaving:
-    """A special point from which branches leave: where it is, on which branch, and how many switches deep that is."""
+    """A special point whose leaving branches are computed, its branch, and the number of switches used for it; see :func:`leave`."""
 
     def __init__(self, run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         self.run, self.point, self.branch, self.depth = run, point, branch, depth
         self.detector = run.detector(point.attached)
         self.engine, self.problem = self.detector.engine, point.attached
-        self.event = run.events.get(point.label)  # None of a graph that was loaded
+        self.event = run.events.get(point.label)  # None in a loaded graph
 
     def switch(self) -> None:
-        """Branches with other solutions of the same problem, or of a larger one at a period doubling or symmetry breaking."""
+        """Queue the branches that leave a branch point, period doubling or symmetry breaking, and classify the point.
+
+        Their solutions belong to the same problem, or to a larger one at a period doubling or symmetry breaking.
+        """
         run, point, engine, problem = self.run, self.point, self.engine, self.problem
         generic = run.kind(point.kind).leaves == "branch"
         if generic or (problem.flip_kind != point.kind and any(map(self._mirrors, self.detector.symmetries))):
@@ -126,7 +139,7 @@ class _Leaving:
                 turns = rise <= abs(bend or 0.0) * departure.amplitude * size
                 if departure.upright(unit, run.settings.near):
                     run.remark(point.label, VERTICAL)
-                elif bend is not None and turns:  # a pitchfork: the known branch is the one that bends
+                elif bend is not None and turns:  # a pitchfork whose bending branch is the known one
                     along = crossing_speed(engine, departure.origin, name, k) if engine.m else None
                     if point.criticality is None:
                         point.criticality, point.coefficient = criticality(bend, along, flip=False)
@@ -141,7 +154,7 @@ class _Leaving:
                     self._follow(departure)
 
     def cycles(self) -> None:
-        """The cycles that are born at a Hopf point, of problems that have cycles."""
+        """Queue the cycles that are born at a Hopf point, for problems that have cycles."""
         run, point = self.run, self.point
         if self.depth + 1 > run.depth:
             return
@@ -156,7 +169,7 @@ class _Leaving:
                 self._follow(departure)
 
     def root(self) -> None:
-        """A side branch has come back to the more symmetric solutions before they were known."""
+        """Queue the branch of more symmetric solutions that a side branch has met before they were known."""
         run, point, engine = self.run, self.point, self.engine
         if self.depth + 1 > run.depth:
             return
@@ -170,11 +183,11 @@ class _Leaving:
         symmetry = met[0].symmetry
         if symmetry.root is not None:
             problem, u = symmetry.root(point.u)
-            # it may be a shorter solution's still: asked here, as singular equations, once solved, repeat nothing exactly
+            # it may repeat a shorter solution; tested here, as the solved point of singular equations no longer repeats it exactly
             problem, u = problem.root(u, point.value) or (problem, u)
             self._queue(Pending(problem, np.asarray(u, dtype=float), point.value, kind=Origin.ROOT))
             return
-        # in the same problem: both ways from a point on the other branch, through the special point
+        # in the same problem: start from a point on the other branch, and follow it in both directions
         amplitude = run.settings.amplitude
         for departure in departures(engine, point.u, point.value, point.tangent, amplitude, one_sided=False):
             start = departure.ahead
@@ -188,10 +201,10 @@ class _Leaving:
         self.run.queue.append(pending)
 
     def _follow(self, departure: Departure) -> None:
-        """Queue a branch that leaves, as far as the depth allows.
+        """Queue a branch that leaves, if the depth allows, and no homoclinic orbit is nearer than `Run.narrowest`.
 
-        Beside the orbit of a saddle-focus folds and period doublings accumulate on the branch, and on each branch that leaves it there, within an
-        interval of the parameter as narrow (P. Glendinning and C. Sparrow, J. Stat. Phys. 35 (1984) 645).
+        Folds and period doublings accumulate on a branch near the homoclinic orbit of a saddle-focus, and likewise on each branch that leaves it
+        there (P. Glendinning and C. Sparrow, J. Stat. Phys. 35 (1984) 645).
         """
         run, point = self.run, self.point
         if self.depth + 1 > run.depth:
@@ -216,9 +229,9 @@ class _Leaving:
         )
 
     def _classify(self, curvature: float, speed: float | None, flip: bool) -> None:
-        """Criticality and coefficient from the curvature of the branch that leaves; of cycles on a mesh from the form of the return map.
+        """Set criticality and coefficient from the curvature of the branch that leaves; for cycles on a mesh from the normal form of the return map.
 
-        Amplitudes of unknowns that differ much in size say less.
+        The latter is more accurate if the unknowns have very different sizes.
         """
         point, problem = self.point, self.problem
         point.criticality, rough = criticality(curvature, speed, flip)
@@ -233,10 +246,19 @@ class _Leaving:
     def _exchange(
         self, target: Engine, spectrum: NDArray[np.complex128], speed: float | None
     ) -> Callable[[Solved], bool] | None:
-        """Whether a solution of the branch that leaves where a multiplier passes -1 at a speed is stable where the known one is not, and unstable where it is.
+        """Return a test for the exchange of stability at a multiplier -1: first point of the leaving branch -> whether its stability agrees.
 
-        As the parity of the number of multipliers past +1 tells, of solutions further from the point than its stated error: others do not tell on which
-        side of it they are. None where it is not known at which speed.
+        The leaving branch is stable on the side where the known branch is unstable, and conversely. The test compares the parity of the number of
+        multipliers past +1. Points within the error of the special point pass, as their side is unknown.
+
+        Parameters
+        ----------
+        target : Engine
+            Engine of the leaving branch.
+        spectrum : ndarray of complex
+            Multipliers at the special point.
+        speed : float or None
+            Crossing speed of the critical multiplier; if unknown, the result is None.
         """
         if speed is None or not np.isfinite(speed) or target.problem.spectrum != "map":
             return None
@@ -252,14 +274,15 @@ class _Leaving:
         return exchanged
 
     def _apart(self, target: Engine, solved: Solved) -> bool:
-        """Whether the parameter of a solution beside the special point differs from the point's by more than is known of both."""
+        """Whether the parameter of a solution beside the special point differs from that of the point by more than the errors of both."""
         known = self.point.location_error + rounding_of_parameter(target, solved)
         return abs(solved.p - self.point.value) > known
 
     def _told_apart(self, target: Engine, search: Search, most: float) -> list[Departure]:
-        """The branches that leave, from first points so far away, up to `most`, that their parameter tells on which side of the special point they are.
+        """Return the branches that leave, with first points whose parameter differs from that of the special point by more than the errors.
 
-        Nearer ones neither tell whether the branch turns nor whether it is stable. Those found first where none does, as of upright branches.
+        Nearer points do not show on which side of the special point the branch lies. The amplitude is doubled up to `most`; if no amplitude is large
+        enough, as for upright branches, the branches from the first amplitude are returned.
         """
         way = self.run.settings.amplitude
         found = further = search(way)
@@ -271,13 +294,13 @@ class _Leaving:
         return found
 
     def _mirrors(self, test: SymmetryTest) -> bool:
-        """Whether a symmetry is what the special point breaks, and the solution is its own image: the part that it changes is rounding."""
+        """Whether the special point breaks a symmetry: its kind is that of the symmetry, and the solution is its own image to rounding."""
         point = self.point
         part = test.part(point.u[None, :], [point.value])
         return test.kind == point.kind and bool(np.abs(part).max() <= self.engine.settings.symmetric)
 
     def _solved(self) -> Solved:
-        """The special point with its row."""
+        """Return the special point as a solved point, with its row."""
         point, engine = self.point, self.engine
         if self.event is not None:
             return self.event.point
@@ -288,7 +311,7 @@ class _Leaving:
         return Solved(point.u, point.value, point.tangent, row, 0.0, point.residual, point.location_error)
 
     def _rank(self, name: str, spectrum: NDArray[np.complex128]) -> int:
-        """Rank of the critical multiplier among those of its sort."""
+        """Return the rank of the critical multiplier among those of its sort."""
         if self.event is not None and self.event.index > 0:
             return self.event.index
         real = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
@@ -297,10 +320,10 @@ class _Leaving:
 
 
 def _critical(engine: Engine, spectrum: NDArray[np.complex128], critical: complex) -> int | None:
-    """How many multipliers are critical, and so how many null vectors there may be; None where the multipliers do not tell.
+    """Return the number of critical multipliers, which limits the number of null vectors; None if it is unknown.
 
-    Of cycles on a mesh at least the one that was located, although beside a homoclinic orbit, where multipliers change by thousands over the
-    last digits of the parameter, it misses its place by more than others that are critical together are apart.
+    For cycles on a mesh it is at least one: beside a homoclinic orbit, where multipliers change by thousands over the last digits of the
+    parameter, the computed critical multiplier may be far from its value.
     """
     if engine.problem.spectrum != "map":
         return None
@@ -309,7 +332,7 @@ def _critical(engine: Engine, spectrum: NDArray[np.complex128], critical: comple
 
 
 def _cubic(problem: Problem, u: np.ndarray, p: float, flip: bool, rough: float | None) -> float | None:
-    """The coefficient from derivatives of the equations, where these can be obtained; else the one of the branch that leaves."""
+    """Return the coefficient from derivatives of the equations if possible, else `rough`, the one from the branch that leaves."""
     if isinstance(problem, Adaptive) or len(u) > DERIVATIVES:
         return rough
     with OPEN:
@@ -318,14 +341,14 @@ def _cubic(problem: Problem, u: np.ndarray, p: float, flip: bool, rough: float |
 
 
 def _cycles(target: Engine, child: Embedding, p: float, amplitude: float) -> list[Departure]:
-    """Small cycles beside a Hopf point, as solutions of their own problem."""
+    """Return small cycles beside a Hopf point, as departures in the problem of cycles."""
     direction = target.unit(np.asarray(child.tangent, dtype=float))
     u, nothing = np.asarray(child.u, dtype=float), np.zeros(target.n + 1)
     return departures(target, u, p, nothing, amplitude, True, [direction])
 
 
 def cycle_at(point: SpecialPoint) -> object:
-    """One of the small cycles that are born at a Hopf point.
+    """Return one of the small cycles that are born at a Hopf point, as the problem's object for users.
 
     Raises
     ------

@@ -21,35 +21,36 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Coverage:
-    """In which part of the interval responses are known.
+    """Tolerance for gaps in the stable responses of a diagram.
 
     Attributes
     ----------
     least : float
-        Of the interval: gaps that are shorter together are not simulated, and a response is known in spite of them.
+        Part of the interval: gaps whose total length is less are neglected, and not simulated.
     """
 
     least: float = 1e-3
 
 
 COVERAGE = Coverage()
-SHARP = Settings.one_place  # of a step between two points: so closely a peak between them is located
-MEETING = Settings.located  # of the interval: stretches that end nearer to one another meet
-SIMULATED = 40  # values over the whole interval, where a diagram has next to nothing of it
+SHARP = Settings.one_place  # accuracy of a peak's position, relative to the distance of its neighbours
+MEETING = Settings.located  # stretches meet if their ends are nearer than this part of the interval
+SIMULATED = 40  # number of simulated values if the gaps are the whole interval
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A stable piece of a branch on which the parameter runs one way.
+    """A stable piece of a branch on which the parameter is monotonic.
 
     Attributes
     ----------
     branch : Branch
     first, last : int
-        Inclusive indices.
-    values, response : float array
+        Inclusive indices of its points on the branch.
+    values, response : ndarray, shape (last - first + 1,)
+        Parameter values, and values of the measure.
     measure : str
-        The name of the response.
+        Name of the measure.
     """
 
     branch: Branch
@@ -61,7 +62,7 @@ class Stretch:
 
 
 def stretches(graph: Graph, measure: str | None = None) -> list[Stretch]:
-    """The stable responses of a diagram; `measure` is that of the picture by default."""
+    """Return the stable stretches of a diagram, with a measure as response; by default that of the picture."""
     name = measure or default_measure(graph)
     found = []
     for branch in graph.branches.values():
@@ -80,7 +81,7 @@ def stretches(graph: Graph, measure: str | None = None) -> list[Stretch]:
 
 
 class Top(NamedTuple):
-    """The largest response of some stretches, where it is, and the index of the nearest point on its branch."""
+    """The largest response of some stretches, its parameter value, the index of the nearest point on the branch, and the stretch."""
 
     response: float
     value: float
@@ -89,10 +90,10 @@ class Top(NamedTuple):
 
 
 def highest(parts: Sequence[Stretch]) -> Top | None:
-    """The largest response; None where there is none.
+    """Return the largest response of some stretches; None if there is none.
 
-    Beside the largest of the points the motion is solved for at further values: on the stretches whose response may rise, between
-    points, above that of all others by as much as it falls to the neighbours.
+    Between the points next to a peak the motion is solved for at further values, on the stretches whose peak may be the largest: between points the
+    response may be higher by as much as it falls from the peak to the neighbouring points.
     """
     tops = [top for top in map(at_points, parts) if np.isfinite(top.response)]
     sure = max((top.response for top in tops), default=-np.inf)
@@ -101,7 +102,7 @@ def highest(parts: Sequence[Stretch]) -> Top | None:
 
 
 def at_points(stretch: Stretch) -> Top:
-    """The largest response at the points of a stretch; -inf where it has none."""
+    """Return the largest response at the points of a stretch; -inf if it has none."""
     if not np.isfinite(stretch.response).any():
         return Top(-np.inf, np.nan, stretch.first, stretch)
     at = int(np.nanargmax(stretch.response))
@@ -109,14 +110,14 @@ def at_points(stretch: Stretch) -> Top:
 
 
 def _fall(top: Top) -> float:
-    """How much the response falls from a point to the lower of its neighbours."""
+    """Return by how much the response falls from a peak to the lower of its neighbours; inf if one is not finite."""
     at = top.place - top.stretch.first
     near = top.stretch.response[max(at - 1, 0) : at + 2]
     return top.response - float(np.nanmin(near)) if np.all(np.isfinite(near)) else np.inf
 
 
 def _refined(top: Top) -> Top:
-    """With what lies between the points."""
+    """Return the peak, located between the points by solving for further motions."""
     from scipy.optimize import OptimizeResult, minimize_scalar
 
     stretch, at = top.stretch, top.place - top.stretch.first
@@ -139,10 +140,10 @@ def _refined(top: Top) -> Top:
 
 
 def inside(top: Top, part: float) -> tuple[np.ndarray, float, float]:
-    """A solution inside the stretch whose response is about a part below the largest one: its unknowns, value and response.
+    """Return the unknowns, value and response of a solution inside the stretch, whose response is lower than the largest one by about a part.
 
-    The largest response often stands at the very end of a stretch, where the motion touches a wall or loses its stability: the least disturbance
-    leads away from there, and a simulation that begins there proves nothing.
+    The largest response often is at an end of the stretch, where the motion touches a wall or loses its stability. The smallest disturbance
+    leads away from there, so that a simulation from there cannot confirm the motion.
     """
     stretch, at = top.stretch, top.place - top.stretch.first
     values, response, level = stretch.values, stretch.response, (1.0 - part) * top.response
@@ -154,12 +155,12 @@ def inside(top: Top, part: float) -> tuple[np.ndarray, float, float]:
         u = None if solve is None else solve(p)
         if u is not None:
             return u, p, _response(stretch, u, p)
-    middle = len(values) // 2  # all of it is as high
+    middle = len(values) // 2  # no point has a lower response
     return stretch.branch.points[stretch.first + middle], float(values[middle]), float(response[middle])
 
 
 def _solver(stretch: Stretch, a: int, b: int) -> Callable[[float], np.ndarray | None] | None:
-    """The motion at a value between points a and b of a stretch; None for a branch without its problem."""
+    """Return a function: value between points a and b of a stretch -> unknowns there, or None; None for a branch without a problem."""
     from ..continuation.engine import Engine
 
     branch = stretch.branch
@@ -177,7 +178,7 @@ def _solver(stretch: Stretch, a: int, b: int) -> Callable[[float], np.ndarray | 
                 guess = (1.0 - part) * points[i] + part * points[i + 1]
                 solved = engine.at_value(guess, p)
                 chord = np.abs(points[i + 1] - points[i]).max()
-                # a motion farther from the chord than its ends from one another is one of another branch
+                # a motion farther from the chord than the chord's length belongs to another branch
                 if solved is not None and np.abs(solved.u - guess).max() <= chord:
                     return solved.u
         return None
@@ -186,12 +187,12 @@ def _solver(stretch: Stretch, a: int, b: int) -> Callable[[float], np.ndarray | 
 
 
 def _response(stretch: Stretch, u: np.ndarray, p: float) -> float:
-    """Of a solution."""
+    """Return the response of a solution."""
     return float(stretch.branch.measure_of(stretch.measure, u[None, :], np.array([p]))[0])
 
 
 def gaps(graph: Graph) -> list[tuple[float, float]]:
-    """Intervals of the parameter in which the diagram has no stable response."""
+    """Return the intervals of the parameter in which the diagram has no stable response."""
     start, end = (float(value) for value in graph.within)
     found, reached = [], start
     spans = sorted((s.values.min(), s.values.max()) for s in stretches(graph))
@@ -203,7 +204,7 @@ def gaps(graph: Graph) -> list[tuple[float, float]]:
 
 
 def united(intervals: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Intervals in order, those that meet or overlap joined."""
+    """Return the union of intervals: in order, those that meet or overlap joined."""
     joined: list[tuple[float, float]] = []
     for low, high in sorted(intervals):
         if joined and low <= joined[-1][1]:
@@ -216,13 +217,17 @@ def united(intervals: Iterable[tuple[float, float]]) -> list[tuple[float, float]
 def unseen(
     open_: Sequence[tuple[float, float]], within: tuple[float, float], seen: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """What is left of gaps where motions without a branch were simulated: a gap is seen between such values that are near enough.
+    """Return the parts of gaps that simulation has not covered.
+
+    A part of a gap between two neighbouring simulated values, or between one and an end of the gap, is covered if it is shorter than
+    1 / `SIMULATED` of the interval.
 
     Parameters
     ----------
     open_ : sequence of (float, float)
+        Gaps.
     within : (float, float)
-        The whole interval; values and ends of gaps no farther apart than a fortieth of it are near enough.
+        The whole interval.
     seen : sequence of float
         Values at which a motion was simulated.
     """
@@ -240,17 +245,20 @@ def spread(
     values: int,
     everywhere: float = SIMULATED,
 ) -> list[float]:
-    """Values spread evenly over gaps, one at least in each but the shortest, which are a thousandth of the interval together.
+    """Return values spread evenly over gaps, at least one in each.
+
+    The shortest gaps, which are `Coverage.least` of the interval together, are left out.
 
     Parameters
     ----------
     open_ : sequence of (float, float)
+        Gaps.
     within : (float, float)
         The whole interval.
     values : int
-        At least so many, more where the gaps are a large part of the interval; 0 for none.
+        Least number of values; there are more if the gaps are a large part of the interval. 0 for none.
     everywhere : float
-        So many where they are all of it.
+        Number of values if the gaps are the whole interval.
     """
     size = within[1] - within[0]
     ascending = sorted(open_, key=lambda gap: gap[1] - gap[0])
@@ -269,9 +277,9 @@ def spread(
 
 # ------------------------------------------------------------------ measures on the axes of a diagram
 def default_measure(graph: Graph) -> str:
-    """The measure on the y axis when none is named: one that is a number on some branch, at least.
+    """Return the measure on the y axis if none is named: the problem's default, if it is a number on at least one branch.
 
-    Motions without impacts have no velocity B there; where none of the graph has, the largest |w| is shown.
+    Motions without impacts have no velocity B; if no branch has one, the largest |w| is shown.
     """
     for branch in graph.branches.values():
         known = branch if branch.problem is None else branch.problem
@@ -285,7 +293,7 @@ def default_measure(graph: Graph) -> str:
 
 
 def undrawn(graph: Graph, x: str, y: str) -> str:
-    """Which branches have no number to draw, as a line of the legend; empty if all have one."""
+    """Return a line for the legend that lists the branches without finite numbers to draw; empty if there are none."""
     missing = [b for b in graph.branches.values() if len(b) and not _finite(b, x, y)]
     if not missing:
         return ""
@@ -296,12 +304,12 @@ def undrawn(graph: Graph, x: str, y: str) -> str:
 
 
 def measured(branch: Branch, name: str) -> np.ndarray:
-    """A measure along a branch, shape (n,); what cannot be obtained is refused with the names that can.
+    """Return a measure along a branch, shape (n,).
 
     Raises
     ------
     ValueError
-        If the branch has no such measure.
+        If the branch has no such measure; the message lists those that it has.
     """
     try:
         return np.asarray(branch.measure(name), float)
@@ -313,6 +321,7 @@ def measured(branch: Branch, name: str) -> np.ndarray:
 
 
 def _shown(graph: Graph, name: str) -> bool:
+    """Whether a measure is a finite number on some branch."""
     return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
 
 
@@ -322,6 +331,13 @@ def _finite(branch: Branch, x: str, y: str) -> bool:
 
 
 def measure_at(branch: Branch, point: SpecialPoint, name: str) -> float:
+    """Return a measure at a special point of a branch.
+
+    Raises
+    ------
+    ValueError
+        If the branch has no such measure.
+    """
     if name == branch.parameter:
         return float(point.value)
     if 0 <= point.index < len(branch):

@@ -1,4 +1,4 @@
-"""The graph as tables: text that fits a terminal, or everything; HTML for notebooks."""
+"""Tables of a graph: as text, complete or fitted to a terminal, and as HTML for notebooks."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from . import Graph
 from .contents import Attractor, proof_mark, proof_text, sentences
 from .stretches import Stretch, at_points, default_measure, gaps, stretches, united
 
-MOST = 8  # motions that a summary lists
-LEFT = tuple(kind.name for kind in KINDS if kind.leaves)  #: kinds that solutions leave
+MOST = 8  # largest number of motions in a summary
+LEFT = tuple(kind.name for kind in KINDS if kind.leaves)  #: kinds of points that branches leave
 
 
 def table(graph: Graph, width: int | None = None) -> str:
-    """Branches, special points and switches as text.
+    """Return the branches, special points and switches as text.
 
     Parameters
     ----------
     graph : Graph
     width : int, optional
-        Characters to a line; None: as many as it takes.
+        Characters per line; None for no limit.
     """
     about = [title(graph), graph.start] if graph.start else [title(graph)]
     lines = [
@@ -52,12 +52,12 @@ def table(graph: Graph, width: int | None = None) -> str:
 
 
 def shown(graph: Graph) -> str:
-    """The same as it fits the terminal, if one shows it."""
+    """Return the table, fitted to the terminal if there is one."""
     return table(graph, terminal_width())
 
 
 def title(graph: Graph) -> str:
-    """What the tables are of, in one line."""
+    """Return one line above the tables: number of branches, parameter, interval."""
     count = len(graph.branches)
     low, high = graph.within
     unit = graph.units.get(graph.parameter, "")
@@ -66,12 +66,12 @@ def title(graph: Graph) -> str:
 
 
 def parameter_head(graph: Graph) -> str:
-    """The parameter as the head of a column, with its unit."""
+    """Return the parameter with its unit, as the head of a column."""
     return with_unit(graph.parameter, graph.units.get(graph.parameter))
 
 
 def branches_table(graph: Graph) -> Table:
-    """A row per branch: what it is, where it is and is stable, and the special points at its ends, or why it ends."""
+    """Return a table with a row per branch: motion, interval, stable intervals, and the special points at its ends, or the reasons for the ends."""
     name = parameter_head(graph)
     rows = []
     for branch in graph.branches.values():
@@ -95,7 +95,7 @@ def branches_table(graph: Graph) -> Table:
 
 
 def special_table(graph: Graph, reasons: bool = True) -> Table:
-    """A row per special point: its kind, branch, value, what it leads to, and with `reasons` why."""
+    """Return a table with a row per special point: kind, branch, value, and branches to which it leads; with `reasons` also notes and remarks."""
     name = parameter_head(graph)
     rows, width = [], graph.within[1] - graph.within[0]
     number = figures_in(graph.within, [point.value for point in graph.special.values()])
@@ -122,9 +122,9 @@ def special_table(graph: Graph, reasons: bool = True) -> Table:
 
 
 def attractors_table(graph: Graph, most: int | None = None) -> Table:
-    """A row per motion that simulated starts have met: where, and its share of the starts, over the interval and at most.
+    """Return a table with a row per motion reached by simulated starts: values, mean share of the starts over the interval, and largest share.
 
-    With `most` so many of them, those with the largest shares first.
+    `most` is the largest number of rows; those with the largest shares come first.
     """
     name = parameter_head(graph)
     values = np.array(sorted({a.value for a in graph.attractors if a.starts}))
@@ -161,7 +161,7 @@ def attractors_table(graph: Graph, most: int | None = None) -> Table:
 
 
 def simulated(graph: Graph) -> str:
-    """At how many values an atlas has simulated, how long nothing new was met, and where nothing is known, in a sentence."""
+    """Return a sentence on an atlas's simulations: the number of values, how many of the last ones found nothing new, and intervals without results."""
     count = len({a.value for a in graph.attractors if a.starts})
     line = f"starts simulated at {count} value{'' if count == 1 else 's'} of {graph.parameter}"
     number = figures_in(graph.within)
@@ -182,14 +182,14 @@ def simulated(graph: Graph) -> str:
 
 
 def stable_text(branch: Branch, number: Callable[[float], str]) -> str:
-    """Where a branch is stable, with numbers as `number` writes them; "-" nowhere, or that it is not computed."""
+    """Return the stable intervals of a branch as text, with numbers formatted by `number`; "-" if there are none, or "not computed"."""
     if branch.stable is None:
         return "not computed"
     return ", ".join(f"{number(a)}..{number(b)}" for a, b in branch.stable_intervals()) or "-"
 
 
 def describe(branch: Branch) -> str:
-    """A branch in a few words: its motion's word, periods, symmetry, virtual or not."""
+    """Return a branch in short: its motion's word, periods, symmetry, and whether it is virtual."""
     about = branch.description
     parts = (
         motion_name(about),
@@ -201,7 +201,7 @@ def describe(branch: Branch) -> str:
 
 
 def ends(branch: Branch) -> str:
-    """The labels at both ends of a branch; where there is none, why it ends there, shortened; "closed" for a circle."""
+    """Return the labels at both ends of a branch, or the shortened reason for an end without a label; "closed" for a closed branch."""
     if branch.closed:
         return "closed"
     at = dict(reversed(branch.marks))
@@ -216,25 +216,26 @@ def ends(branch: Branch) -> str:
 
 
 def with_unit(name: str, unit: str | None) -> str:
-    """A name as the head of a column."""
+    """Return a name with its unit, as the head of a column."""
     return f"{name} [{unit}]" if unit else name
 
 
-# ------------------------------------------------------------------ long words, for tables and captions; files keep them whole
+# ------------------------------------------------------------------ long words, shortened for tables and captions; files have the whole words
 def short_word(word: str, limit: int = 24) -> str:
-    """A word of events in at most about `limit` characters.
+    """Shorten a word of events to about `limit` characters.
 
-    A word that repeats a shorter one is written with its power, ``(LtRLttR)^8``; what is still too long is cut, with the
-    number of its events (between blanks where their names are long; else letters, as signs such as those of ``s+`` belong to the event before them). Names of modulations stay as they are.
+    A word that repeats a shorter one is written as a power, ``(LtRLttR)^8``. If it is still too long it is cut, and the number of its events is
+    added. Events are separated by blanks if their names are long; else each letter is an event, and signs as in ``s+`` belong to the event
+    before them. Names of modulations are not changed.
     """
     if len(word) <= limit or word in MODULATIONS:
         return word
-    joint = " " if " " in word else ""  # names of several letters stand apart
-    length = (word + joint + word).find(word, 1)  # of the shortest root, with its joint
+    joint = " " if " " in word else ""  # separator of the events
+    length = (word + joint + word).find(word, 1)  # of the shortest root, separator included
     power = f"^{(len(word) + len(joint)) // length}" if length < len(word) else ""
     root = word[:length].rstrip()
     if len(root) > limit:
-        shown = re.sub(r"\[[^\]]*\]", "", root)  # without modes, which are no events
+        shown = re.sub(r"\[[^\]]*\]", "", root)  # modes are no events
         events = len(shown.split()) if joint else sum(letter.isalpha() for letter in shown)
         cut = root[: limit - 8]
         root = f"{cut[: cut.rfind(joint)] if joint else cut}... {events} events"
@@ -242,7 +243,7 @@ def short_word(word: str, limit: int = 24) -> str:
 
 
 def told_apart(words: Iterable[str], limit: int = 24) -> dict[str, str]:
-    """Short forms of words by word: those of different words differ, and are longer where they have to be."""
+    """Return short forms by word; forms of different words differ, and are longer than `limit` if necessary."""
     limits = dict.fromkeys(words, limit)
     while True:
         short = {word: short_word(word, most) for word, most in limits.items()}
@@ -254,27 +255,28 @@ def told_apart(words: Iterable[str], limit: int = 24) -> dict[str, str]:
 
 
 def short_text(text: str) -> str:
-    """A text on one line of at most 100 characters, cut between words."""
+    """Return a text on one line of at most 100 characters, cut between words."""
     return textwrap.shorten(text, 100, placeholder=" ...", break_on_hyphens=False)
 
 
 def motion_name(description: Mapping[str, Any]) -> str:
-    """How tables and pictures call a motion: its word, or, where nothing happens on it, what its problem calls that ("stuck", "no events")."""
+    """Return the displayed name of a motion: its shortened word, or, without events, the problem's name for it ("stuck", "no events")."""
     return short_word(_word(description))
 
 
 def _word(description: Mapping[str, Any]) -> str:
+    """Return the word of a motion, or without one its name."""
     return str(description.get("word") or description.get("name", ""))
 
 
 def short_words(text: str) -> str:
-    """A sentence with its long words shortened."""
+    """Return a sentence with its long words of events shortened."""
     return " ".join(short_word(part) for part in text.split(" "))
 
 
 # ------------------------------------------------------------------ pages for notebooks
 def graph_page(graph: Graph) -> str:
-    """All tables of a graph."""
+    """Return all tables of a graph as HTML."""
     about = f"<p>{title(graph)}</p>" + (f"<p>{html.escape(graph.start)}</p>" if graph.start else "")
     parts = [about, branches_table(graph).html()]
     if graph.special:
@@ -286,7 +288,7 @@ def graph_page(graph: Graph) -> str:
 
 
 def branch_page(branch: Branch) -> str:
-    """What a branch is, line by line."""
+    """Return the properties of a branch as an HTML table."""
     low, high = branch.range
     rows = [
         ("what", describe(branch)),
@@ -300,7 +302,7 @@ def branch_page(branch: Branch) -> str:
 
 
 def point_page(point: SpecialPoint) -> str:
-    """What a special point is, line by line."""
+    """Return the properties of a special point as an HTML table."""
     rows = [
         (
             "kind",
@@ -315,19 +317,17 @@ def point_page(point: SpecialPoint) -> str:
     return Table((point.label, "special point"), rows).html()
 
 
-# ------------------------------------------------------------------ a first answer in a few lines
+# ------------------------------------------------------------------ summary
 def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
-    """Stable motions of a graph: word, period, where, largest response; then what part of the interval has none.
-
-    Of an atlas that is told in brief also the motions that most simulated starts reach.
+    """Return a summary of the stable motions of a graph: word, type, intervals, largest response; and the part of the interval without one.
 
     Parameters
     ----------
     graph : Graph
     width : int, optional
-        Characters to a line; those of the terminal by default.
+        Characters per line; those of the terminal by default.
     brief : bool
-        Whether no tables follow.
+        For an atlas, add the motions that most simulated starts reach. Used if no tables follow.
     """
     width = terminal_width() if width is None else width
     measure = default_measure(graph)
@@ -346,7 +346,7 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     known = [end for key in listed for interval in stable[key] for end in interval]
     number = figures_in(
         graph.within, known, same=Settings.located * length
-    )  # one point, seen from two branches
+    )  # equal ends of two branches are one point
     rows = []
     for key in listed:
         top = max(map(at_points, met[key]), key=lambda top: top.response)
@@ -391,7 +391,7 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
 
 
 def _kind(about: Mapping[str, Any]) -> str:
-    """What kind of motion it is, in a few words."""
+    """Return the type of a motion in a few words: symmetric, period, without impacts."""
     periods = int(about.get("periods") or 0)
     said = ["symmetric"] if about.get("symmetric") else []
     said += [f"period {periods}"] if periods > 1 else []
