@@ -1,9 +1,10 @@
-"""Borders: where a motion stops being possible, and the motion that takes its place.
+"""Borders: points where a motion stops being physically possible, and the motions that continue from there.
 
-`cross` finds the branches on the other side, or says why there is none. The local rules of `rewriting` propose the word there; where they do not, the
-simulator writes it. A proposal counts only if its maps have a real solution next to the border (`neighbours`, with what vanishes there held at a size)
-and the simulator, which knows no word, follows it. `rounds` knows what changes in some rounds only. The new word begins where the old one
-began (`read_alike`): measures taken at the first impact, and words in tables, then go on without a jump along a chain of branches.
+`cross` finds the branches on the other side of a border; `dead_end` gives the reason if there are none. The local rules of `rewriting` propose
+the new word; if they fail, the word is read from a simulation. A proposal is accepted only if its equations have a real solution next to the border
+(`neighbours` solves with the size of the vanishing event held fixed) and the simulator follows it. `rounds` treats changes in some rounds of a
+cycle only. The new word begins at the event that corresponds to the first one of the old word (`read_alike`), so that measures taken at the first
+impact, and words in tables, do not jump along a chain of branches.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
 
 
-LONG_WORD = 60  # letters of a word that a line has room for
+LONG_WORD = 60  # longest word, in characters, that a note shows
 NEARER = (
     0.3,
     0.1,
     0.03,
     0.01,
-)  # parts of the way from the border at which a simulated orbit is solved for again
+)  # distances from the border, relative to that of a simulated orbit, at which the orbit is solved for again
 UNKNOWN = (
     "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"
 )
@@ -50,12 +51,12 @@ ENDS = {
     "stuck": "comes to rest",
     "aperiodic": "goes to a motion without a period",
 }
-"""What simulation does where it finds no orbit."""
+"""Description of a simulation that reaches no orbit, by kind of motion."""
 TRANSIENT = 60  # forcing periods, or events of a self-excited motion
 
 
 def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list[Seed]:
-    """Seeds of the branches on the other side of a border.
+    """Find the branches on the other side of a border.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
     point : special point
         With `u`, `value`, `tangent` and `margin_index`.
     every : bool
-        Also the orbits of less symmetry or longer period that leave at the border itself, where there are others.
+        Include orbits of less symmetry or longer period that leave at the border, even if other branches are found.
 
     Returns
     -------
@@ -77,12 +78,12 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
     before = problem.orbit(u, p)
     if rest or piled_up(before, approaches_of(problem.word, margins_of(problem, u, p))):
         return rest
-    assert point.margin_index is not None  # it lies at a border
+    assert point.margin_index is not None  # the point lies at a border
     index, tangent_here = point.margin_index, np.asarray(point.tangent, dtype=float)
     nearby = _real_part(problem, u, p, tangent_here, index)
     old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
     seeds = []
-    # the simulator is asked only where no proposal stands
+    # the simulation comes last: it runs only if no proposal is accepted
     border = placed(problem, u, p, index)
     rooms = chain.from_iterable(map(proposals, border.with_room()))
     for found, note in chain(proposals(border), rooms, _simulated(problem, u, p)):
@@ -101,7 +102,7 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
 
 
 def _with_word(seed: Seed) -> Seed:
-    """The seed with its word in the note; of a word too long for a line, the number of its events."""
+    """Add the new word to the seed's note; of a long word, the number of its events."""
     text = seed.problem.spelling or "free of events"
     if len(text) > LONG_WORD:
         text = f"one of {len(seed.problem.word)} events"
@@ -109,7 +110,7 @@ def _with_word(seed: Seed) -> Seed:
 
 
 def _simplest(found: Grown, orbit: Orbit) -> Grown:
-    """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
+    """The same orbit in the smallest problem: as a shorter orbit if it repeats one, as a symmetric one if it is its own mirror image."""
     problem, root = found.problem, orbit.root()
     smallest = problem.sibling(root.word, root.periods, root.symmetric)
     if smallest.periods == problem.periods and smallest.symmetric == problem.symmetric:
@@ -118,7 +119,7 @@ def _simplest(found: Grown, orbit: Orbit) -> Grown:
 
 
 def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
-    """Where the simpler orbits, on whose border a branch of less symmetry ends, go on themselves."""
+    """Continuation of the simpler orbits (more symmetry, shorter period) on whose border a branch ends."""
     at_border, residual = solved_at(problem.equations, u, p)
     if not residual < SOLVING.residual:
         return
@@ -132,10 +133,10 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
 def _real_part(
     problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int
 ) -> list[tuple[np.ndarray, float] | None]:
-    """Solutions (u, p) in the branch's real part, close to the border at each of the distances `BORDERING.beside`; None where there is none.
+    """Solutions (u, p) on the branch's real side, at each of the distances `BORDERING.beside` from the border; None where Newton's method fails.
 
-    Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
-    border, so its tangent does not tell.
+    Both directions are solved: if a stick vanishes in a flight, the branch turns back at the border, so that its tangent does not show the
+    real side.
     """
     tangent = tangent / float(np.abs(tangent).max())
     sides, found = (1.0, -1.0), []
@@ -154,9 +155,7 @@ def _real_part(
 
 
 def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple[Grown, str]]:
-    """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
-    # import of own names
-
+    """Yield attractors that a simulation reaches from the border orbit at parameter values close to the border, on both sides."""
     orbit = problem.orbit(u, p)
     here = _key(orbit)
     for away, side in product(BORDERING.away, (1.0, -1.0)):
@@ -170,7 +169,7 @@ def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple
         v = other.reduce(found.nodes)
         nearer = _nearer(other, v, q, p)
         if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
-            continue  # an attractor somewhere else: nothing joins it to the border
+            continue  # another attractor, not connected to the border
         yield Grown(other, v, q, None), "the simulator goes on"
 
 
@@ -180,7 +179,7 @@ def _key(orbit: Orbit) -> Hashable:
 
 
 def _loses_alike(one: Orbit, other: Orbit) -> bool:
-    """Whether two motions lose as much by friction, where the machine knows what that is."""
+    """Whether two motions dissipate about the same energy by friction; True for machines without that measure."""
     if "friction_loss" not in one.flow.measure_names(one.model):
         return True
     losses = [orbit.measure("friction_loss") / orbit.periods for orbit in (one, other)]
@@ -189,7 +188,7 @@ def _loses_alike(one: Orbit, other: Orbit) -> bool:
 
 
 def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit | None:
-    """The orbit at q, followed towards the border at p as far as it can be solved for; None if it stops being real on the way."""
+    """Continue the orbit at q towards the border at p as far as Newton's method converges; None if it becomes virtual on the way."""
     found = problem.orbit(u, q)
     for part in NEARER:
         there = p + part * (q - p)
@@ -203,7 +202,7 @@ def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit |
 
 
 def read_alike(seed: Seed, before: Orbit) -> Seed:
-    """The seed, its orbit read from the event that corresponds to the first event of the orbit before the border."""
+    """Rotate the seed's orbit to the event that corresponds to the first event of the orbit before the border."""
     if not len(seed.problem.word) or not len(before.word):
         return seed
     orbit = seed.problem.orbit(seed.u, seed.p)
@@ -223,7 +222,7 @@ def read_alike(seed: Seed, before: Orbit) -> Seed:
 
 
 def whole_direction(problem: CycleProblem, direction: np.ndarray) -> np.ndarray:
-    """A direction of the unknowns as one of the nodes of the whole cycle."""
+    """Expand a direction of the unknowns to the nodes of the whole cycle."""
     along = np.asarray(direction).reshape(problem.length, -1)
     if not problem.symmetric:
         return along
@@ -233,7 +232,7 @@ def whole_direction(problem: CycleProblem, direction: np.ndarray) -> np.ndarray:
 
 
 def _first_event(orbit: Orbit, before: Orbit) -> int:
-    """The event at the phase of the old first one (of a self-excited motion: with its states), of its kind if there is one; never a slip."""
+    """Index of the event nearest in phase (of a self-excited motion: in state) to the old first event, of the same letter if possible, never a slip."""
     word = orbit.word
     kinds = [word.letter(i).kind for i in range(len(word))]
     choices = [i for i, letter in enumerate(word.events) if letter == before.word.events[0]]
@@ -248,7 +247,7 @@ def _first_event(orbit: Orbit, before: Orbit) -> int:
 
 
 def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
-    """The stick-slip motion just beyond the slip of a stuck one: closed form, or what the simulator finds."""
+    """Seed of the stick-slip motion just beyond the border at which a stuck absorber begins to slip."""
     p = float(point.value)
     for away in BORDERING.slipping:
         for side in (1.0, -1.0):
@@ -272,7 +271,7 @@ def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
 
 
 def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
-    """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
+    """Seed of the stuck absorber, at the border at which the slips of a stick-slip motion vanish; empty at other borders."""
     if not problem.model.in_cavity or sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []
     p = float(point.value)
@@ -281,7 +280,7 @@ def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
         q = p + side * BORDERING.away[-1] * unit
         orbit = Orbit.at_rest(problem.model, problem.values(q))
         beyond = Orbit.at_rest(problem.model, problem.values(p - side * BORDERING.away[-1] * unit))
-        if orbit.margin > 0.0 >= beyond.margin:  # next to nothing reads as zero
+        if orbit.margin > 0.0 >= beyond.margin:  # a rounding error counts as zero
             other = problem.sibling(orbit.word, 1, orbit.symmetric)
             direction = np.zeros(other.dimension + 1)
             direction[-1] = side
@@ -310,7 +309,7 @@ def dead_end(problem: CycleProblem, point: BorderPoint) -> str:
 
 
 def _contact(orbit: Orbit, index: int) -> str:
-    """The contact that a margin watches, in words."""
+    """Description of the contact to which a margin belongs."""
     word = orbit.word
     place, watched = place_of(word, index)
     if watched < 0:
@@ -319,7 +318,7 @@ def _contact(orbit: Orbit, index: int) -> str:
 
 
 def _nearly_vanishing(orbit: Orbit) -> str:
-    """What else is about to vanish beside that which does; empty where nothing is."""
+    """Description of other events that nearly vanish at the border; empty if there are none."""
     margins, word = orbit.relative_margins, orbit.word
     speeds = [m.value for m in margins if m.kind == "approach" and BORDERING.shown < m.value < BORDERING.slow]
     turns = [k for k in range(len(word)) if word.letter(k).kind == TURN]
@@ -350,9 +349,7 @@ def _nearly_vanishing(orbit: Orbit) -> str:
 
 
 def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
-    """Where simulation from the border orbit goes, a little to both sides of it."""
-    # import of own names
-
+    """Descriptions of the motions that a simulation reaches from the border orbit, above and below the border."""
     told = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):
         found, kind = settled(
@@ -370,7 +367,7 @@ def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
 
 
 def piled_up(orbit: Orbit, approaches: np.ndarray) -> bool:
-    """Whether a border orbit with these speeds of impacts has one that is too slow, once the wall has sent it back, to see what the next ones do."""
+    """Whether an impact of the border orbit rebounds so slowly that the events after it cannot be resolved."""
     hits = [place for place in range(len(orbit.word)) if orbit.word.letter(place).kind == HIT]
     return any(
         speed > BORDERING.shown and orbit.flow.restitution(orbit, place) * speed < BORDERING.unresolved
@@ -379,7 +376,7 @@ def piled_up(orbit: Orbit, approaches: np.ndarray) -> bool:
 
 
 def _gives_way_one_way(orbit: Orbit) -> bool:
-    """Whether friction and slope hold the absorber better one way than the other."""
+    """Whether friction and slope together hold the absorber more firmly in one direction."""
     model = orbit.model
     if not isinstance(model, Model):
         return False
@@ -388,7 +385,7 @@ def _gives_way_one_way(orbit: Orbit) -> bool:
 
 
 def settled(orbit: Orbit, params: np.ndarray) -> tuple[Orbit | None, str]:
-    """The periodic motion that simulation reaches from an orbit's first event with other parameters; else None and the kind of motion, or why not."""
+    """Simulate from an orbit's first event with other parameters: the periodic motion reached (None if there is none), and the kind of motion or the error."""
     word = orbit.word
     place = next((i for i in range(len(word)) if word.letter(i).kind != SLIP), 0)
     most = max(2 * orbit.periods, 4)

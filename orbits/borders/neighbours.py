@@ -1,4 +1,4 @@
-"""Orbits next to a border, with the words that the local rules propose: what vanishes at the border is given a size."""
+"""Solve for orbits with a rewritten word next to a border, with the size (duration or speed) of the vanishing event held fixed."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from orbits.orbit import REAL, SHRINKS, Orbit, examined, gap, tends
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING, REPLAYING, SOLVING
 
-ASTRAY = 0.1  # part of the way from the border by which a solution may miss its prediction: else it is of another branch
-CLOSER = 3  # times that a solution which tends to the border orbit is looked at closer still
-ROOM = 4  # events that may stand before that of the margin
+ASTRAY = 0.1  # largest distance of a solution from its prediction, relative to that from the border; beyond, it belongs to another branch
+CLOSER = 3  # further solutions, each ten times closer to the border, that must tend to the border orbit
+ROOM = 4  # rotations tried, by events before the margin's
 
 
 def parameter_unit(problem: CycleProblem, p: float) -> float:
-    """What changes of the parameter near p are compared with: its own size, or where it started."""
+    """Scale of parameter changes near p: its size there, or at the start of the branch."""
     return max(abs(p), abs(problem.equations.began)) or 1.0
 
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
-    """Margins of a solution; where one is not a number it is as far from real as can be."""
+    """Margins of a solution; -inf in place of NaN."""
     return np.nan_to_num(examined(problem.equations, u, p)[2], nan=-np.inf, posinf=np.inf)
 
 
@@ -37,7 +37,7 @@ def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
 
 
 class Border:
-    """A border orbit, read from one of its events, and what the local rules propose there.
+    """A border orbit, rotated to one of its events, and the edits that the local rules propose.
 
     Attributes
     ----------
@@ -58,22 +58,22 @@ class Border:
 
     @cached_property
     def edits(self) -> list[Edit]:
-        """What the local rules propose."""
+        """Edits that the local rules propose."""
         return edits_at(self.orbit, self.margin, self.problem.length)
 
     @property
     def event(self) -> int:
-        """The event of the margin."""
+        """Index of the margin's event."""
         return self.margin // len(self.problem.word.alphabet.columns)
 
     def begun(self, edit: Edit) -> Begun | None:
-        """What a single one of the edits begins, worked out once."""
+        """The rewritten word of a single edit (see `begun`), computed once."""
         if id(edit) not in self._begun:
             self._begun[id(edit)] = begun(self.problem, self.orbit, self.p, [edit])
         return self._begun[id(edit)]
 
     def read_from(self, first: int) -> Border:
-        """The same border read from event `first`."""
+        """The same border, rotated to event `first`."""
         problem, width = self.problem, len(self.problem.word.alphabet.columns)
         orbit = self.orbit.rotate(first % len(problem.word))
         other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
@@ -81,14 +81,14 @@ class Border:
         return Border(other, other.reduce(orbit.nodes), self.p, margin)
 
     def with_room(self) -> Iterator[Border]:
-        """The same border read with more events before the margin's: a change may need room on either side."""
+        """Yield the same border with other numbers of events before the margin's: a change may need events on both sides."""
         for ahead in range(min(ROOM, self.problem.length)):
             if ahead != self.event and len(self.problem.word):
                 yield self.read_from(self.event - ahead)
 
 
 def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Border:
-    """The border at which margin `index` of a solution vanishes, read so that what changes does not straddle the end of the word."""
+    """The border at which margin `index` of a solution vanishes, rotated so that the changed events do not wrap around the end of the word."""
     border = Border(problem, u, p, index)
     place = border.event
     if not len(problem.word) or problem.length < 2:
@@ -100,7 +100,7 @@ def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Border
 
 
 class Grown(NamedTuple):
-    """An orbit next to the border, of a branch that begins at it; `tangent`, where it is known, leads away."""
+    """A solution next to the border, on a branch that begins there; `tangent` (None if unknown) points away from the border."""
 
     problem: CycleProblem
     u: np.ndarray
@@ -108,12 +108,12 @@ class Grown(NamedTuple):
     tangent: np.ndarray | None
 
     def orbit(self) -> Orbit:
-        """The orbit itself."""
+        """The solution as an orbit."""
         return self.problem.orbit(self.u, self.p)
 
 
 def proposals(border: Border) -> Iterator[tuple[Grown, str]]:
-    """Solutions next to the border with the words that the local rules propose, and what changes."""
+    """Yield solutions next to the border with the words that the local rules propose, and a description of each change."""
     problem, orbit, p = border.problem, border.orbit, border.p
     values = margins_of(problem, border.u, p)
     together = [
@@ -134,7 +134,7 @@ def proposals(border: Border) -> Iterator[tuple[Grown, str]]:
 
 
 def followed(orbit: Orbit) -> bool:
-    """Whether every margin is kept, and the simulation follows the orbit."""
+    """Whether all margins are positive and the simulation follows the orbit."""
     return orbit.real and orbit.replay() < REPLAYING.followed
 
 
@@ -143,7 +143,7 @@ def _overlap(a: Change, b: Change) -> bool:
 
 
 class Held(NamedTuple):
-    """A solution in which what grows beyond the border has a given size."""
+    """A solution in which the growing quantity (duration or speed of the new event) has a given size."""
 
     u: np.ndarray
     p: float
@@ -152,7 +152,7 @@ class Held(NamedTuple):
 
 
 class Growing(NamedTuple):
-    """What grows from nothing beyond a border at p: in orbits with a new word, at one of its events, by a change."""
+    """A quantity that grows from zero beyond a border at `p`: problem of the rewritten word, index of its new event, and the change of the word."""
 
     problem: CycleProblem
     first: int
@@ -160,7 +160,7 @@ class Growing(NamedTuple):
     p: float
 
     def climb(self, guess: np.ndarray, sizes: tuple[float, ...]) -> list[Held]:
-        """Solve with it held at each of the sizes in turn, as long as that converges."""
+        """Solve with the quantity held at each of the sizes in turn, until Newton's method fails."""
         found: list[Held] = []
         u, q = guess, self.p
         for wanted in sizes:
@@ -172,7 +172,7 @@ class Growing(NamedTuple):
         return found
 
     def outwards(self, found: list[Held]) -> Iterator[Held]:
-        """The solutions found from small to large, and on to larger sizes."""
+        """Yield the solutions found from small to large sizes, then solutions of still larger sizes."""
         yield from found[-2::-1]
         held: Held | None = found[0]
         while held is not None and held.size < GROWING.first:
@@ -181,7 +181,7 @@ class Growing(NamedTuple):
                 yield held
 
     def hold(self, guess: np.ndarray, q: float, wanted: float) -> Held | None:
-        """Solve with it held at a size; None where there is no such solution near the border."""
+        """Solve with the quantity held at a size; None if there is no such solution near the border."""
         other, first, change, p = self
         size = other.dimension
         n = size // other.length
@@ -194,7 +194,7 @@ class Growing(NamedTuple):
             if change.what is What.CROSSINGS_APPEAR:
                 u[here] = 0.5 * (u[here] + u[following] - wanted)
                 u[following] = u[here] + wanted
-            elif change.start == change.stop:  # the later event stays: friction gives way there
+            elif change.start == change.stop:  # the later event, at which friction gives way, stays
                 u[here] = u[following] - wanted
             else:
                 u[following] = u[here] + wanted
@@ -207,7 +207,7 @@ class Growing(NamedTuple):
                 len(change.events) > 1
                 and other.word.letter(first + 1).kind == STICK
                 and abs(speed) > BORDERING.together
-            ):  # it comes to rest the sooner the slower it is
+            ):  # the time until it comes to rest is proportional to its speed
                 clock = here if not other.forced else following
                 since = u[following] - u[here] if other.forced else u[here]
                 u[clock] += since * (wanted / speed - 1.0)
@@ -218,16 +218,16 @@ class Growing(NamedTuple):
 
 
 class Begun:
-    """The new word that edits make of a border orbit, and its solutions next to the border; each is worked out once.
+    """The rewritten word of a border orbit, and its solutions next to the border, each computed once.
 
     Attributes
     ----------
     orbit : Orbit
         The border orbit.
     stated : Growing
-        What grows as the edits have it.
+        The growing quantity according to the edits.
     guess : float array (N,)
-        The new orbit at the border.
+        Unknowns of the new orbit at the border.
     """
 
     def __init__(self, orbit: Orbit, stated: Growing, guess: np.ndarray) -> None:
@@ -236,10 +236,10 @@ class Begun:
 
     @cached_property
     def growing(self) -> Growing | None:
-        """What grows from nothing; None where the new word is regular at the border.
+        """The quantity that grows from zero; None if the equations of the new word are regular at the border.
 
-        Where the edits say of nothing that it grows, it is what vanishes at the border and another round still has: an impact of vanishing
-        speed, or a stick of vanishing length. There the equations are singular.
+        If the edits name no growing quantity, another round of the cycle may still contain an impact of vanishing speed or a stick of
+        vanishing length, which makes the equations singular at the border.
         """
         (other, _, change, p), guess = self.stated, self.guess
         if change.grows is not Grows.MARGIN:
@@ -269,7 +269,7 @@ class Begun:
         return None
 
     def climbed(self, sizes: tuple[float, ...]) -> list[Held]:
-        """The solutions in which what grows has these sizes; see `Growing.climb`."""
+        """Solutions in which the growing quantity has these sizes; see `Growing.climb`."""
         if sizes not in self._climbed:
             assert self.growing is not None
             self._climbed[sizes] = self.growing.climb(self.guess, sizes)
@@ -277,7 +277,7 @@ class Begun:
 
 
 def begun(problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> Begun | None:
-    """What edits of a border orbit begin; None where they make no word."""
+    """Rewrite the word of a border orbit by edits; None if no word is possible."""
     half, halved = problem.length, problem.symmetric
     if halved and len(problem.word):  # edit the half, and mirror it
         if any(edit.change.stop > half and edit.change.start != half for edit in edits):
@@ -304,9 +304,9 @@ def begun(problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> B
 def grown(
     begun: Begun | None, ways: tuple[tuple[float, ...], ...] = BORDERING.sizes, steady: bool = False
 ) -> Grown | None:
-    """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
+    """Solve for an orbit of the new word next to the border, with the growing quantity at the smallest size for which Newton's method converges.
 
-    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
+    None if no solution is real and tends to the border orbit or, with `steady`, if that solution is unstable.
     """
     if begun is None:
         return None
@@ -320,7 +320,7 @@ def grown(
         found = begun.climbed(sizes)
         if (
             found and steady
-        ):  # beside a graze the multipliers grow without bound: stable from a flip close to it on
+        ):  # at a graze multipliers are unbounded: an orbit may be stable only from a period doubling close to it on
             found = [held for held in found if stable_at(other, held.u, held.p)]
             if not found:
                 return None
@@ -330,9 +330,9 @@ def grown(
 
 
 def _begins_at(border: Orbit, growing: Growing, found: list[Held]) -> bool:
-    """Whether the solutions, from large to small, are real ones that tend to the border orbit.
+    """Whether the solutions, from large to small sizes, are real and tend to the border orbit.
 
-    Next to the border margins that vanish there are too small to have a sign: those of the same motion further away tell.
+    Margins that vanish at the border are too small for a sign next to it; solutions further away decide.
     """
     other, near, second, size = growing.problem, found[-1], None, found[-1].size
     values = margins_of(other, near.u, near.p)
@@ -348,7 +348,7 @@ def _begins_at(border: Orbit, growing: Growing, found: list[Held]) -> bool:
             return False
         undecided &= values < BORDERING.shown
     if size < GROWING.first and np.any(undecided & (values < REAL)):
-        return False  # no solution where they would have a sign
+        return False  # no solution at a size where their sign is certain
     further = second or near
     apart = gap(border, other.orbit(near.u, near.p))
     if not tends(apart, lambda: gap(border, other.orbit(further.u, further.p))):
@@ -357,9 +357,9 @@ def _begins_at(border: Orbit, growing: Growing, found: list[Held]) -> bool:
 
 
 def _keeps_tending(border: Orbit, growing: Growing, near: Held, apart: float) -> bool:
-    """Whether the solutions go on tending to the border orbit, and to its place, at still smaller sizes, as far as they can be solved for.
+    """Whether solutions of still smaller sizes, as far as Newton's method converges, go on tending to the border orbit and its parameter value.
 
-    Those of a branch that only passes by do so until they are as far as that branch's own border. `apart` is the distance of `near`.
+    Solutions of a branch that only passes nearby stop doing so. `apart` is the distance of the solution `near` from the border orbit.
     """
     other, p = growing.problem, growing.p
     placed = BORDERING.placed * parameter_unit(other, p)
@@ -377,12 +377,12 @@ def _keeps_tending(border: Orbit, growing: Growing, near: Held, apart: float) ->
 
 
 def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, steady: bool) -> Grown | None:
-    """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
+    """Solve for a regular word at fixed parameter values on both sides of the border, and return the solution that is real."""
     unit = parameter_unit(other, p)
     at_border, _, residual, tangent = newton(other.equations, guess, p)
     if not residual < SOLVING.residual:
         return None
-    # where the branch turns back, or its period halves, close by, solutions at a given value may be those of another one
+    # if the branch has a fold, or its period is halved, close by, solutions at a fixed value may belong to another branch
     steep = np.abs(tangent).max() * unit > BORDERING.steep
     found = _along(other, at_border, p, tangent) if steep else None
     for away in BORDERING.regular if found is None else ():
@@ -398,7 +398,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
             margin, u, q, along = max(sides, key=lambda entry: entry[0])
             if (
                 margin > BORDERING.growing * away
-            ):  # not one that vanishes all along, as at a wall touched without speed
+            ):  # the margin grows; it does not vanish along the whole branch, as at a wall touched without speed
                 found = Grown(other, u, q, along)
                 break
     if found is None or (steady and not stable_at(other, found.u, found.p)):
@@ -408,7 +408,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
 
 
 def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
-    """The same where the new word's branch turns back close to the border: both ways along its tangent."""
+    """The same if the new branch turns back close to the border: solve in both directions of its tangent."""
     length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
     for away in BORDERING.turning:
         for side in (1.0, -1.0):

@@ -1,6 +1,7 @@
-"""How the word changes at a border: what the contacts' laws propose, with the nodes of the new events, and the word and nodes that come of it.
+"""Rewrite the word of an orbit at a border.
 
-The laws (`orbits.contacts`) say how the word changes and where the new events are; the flow gives them their numbers.
+The laws of the contacts (`orbits.contacts`) propose changes of the word and the places of the new events; the flow computes the nodes of these
+events; `rewritten` applies both to the word and nodes of the orbit.
 """
 
 from __future__ import annotations
@@ -19,16 +20,16 @@ from orbits.words.alphabet import Watch
 
 
 def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
-    """The edits that margin `index` may ask for at the border orbit, the likeliest first.
+    """Edits of a border orbit at which margin `index` vanishes, the likeliest first.
 
     Parameters
     ----------
     orbit : Orbit
-        The border orbit, over its whole cycle, read so that the margin's event is not the last one.
+        The border orbit over its whole cycle, rotated so that the margin's event is not the last one.
     index : int
         Index of the vanishing margin.
     unit : int, optional
-        Number of events after which the cycle repeats, or mirrors, itself; default: all.
+        Number of events after which the cycle repeats itself or its mirror image; default: all.
     """
     found = orbit.flow.vanishing(orbit, index, unit or len(orbit.word))
     if found is None:
@@ -39,41 +40,41 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
 
 
 def rewritten(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
-    """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand; where nothing is left one node to look from."""
+    """Apply edits of disjoint places: the new word, its nodes, and the index of the first new event; for an empty word one node remains."""
     full = len(word) > 0
     events, modes, rows = list(word.events), list(word.modes) if full else [], list(nodes) if full else []
     for change, new in sorted(edits, key=lambda edit: edit.change.start, reverse=True):
         place = slice(change.start, change.stop)
         events[place], modes[place], rows[place] = change.events, change.modes, list(new)
     first = min(edit.change.start for edit in edits)
-    if full and not events:  # what the contacts did before goes on
+    if full and not events:  # the contacts keep the mode before the edit
         return word.like((), (word.mode(first - 1),)), nodes[:1], 0
     return word.like(events, modes), np.array(rows) if rows else nodes[:1], first
 
 
 def durations_after(durations: np.ndarray, nodes: np.ndarray, edit: Edit) -> np.ndarray:
-    """Nodes of a self-excited orbit after an edit, whose inserted events have clocks from the flight's start: durations in their place.
+    """Nodes of a self-excited orbit after an edit, with the durations of the flights in the first column.
 
     Parameters
     ----------
     durations : ndarray, shape (L,)
-        Before the edit.
+        Durations of the flights before the edit.
     nodes : ndarray
-        After it.
+        Nodes after the edit; the first entry of an inserted event is its time since the flight began.
     edit : Edit
     """
     nodes = nodes.copy()
     change, m = edit.change, len(edit.change.events)
     if change.start == change.stop and m:  # inserted into the flight before `start`
-        if len(nodes) == m:  # the first events of a motion that had none
+        if len(nodes) == m:  # the orbit had no events before
             nodes[:, 0] = np.diff(np.append(edit.nodes[:, 0], edit.nodes[0, 0] + durations.sum()))
             return nodes
         inside = np.append(edit.nodes[:, 0], durations[change.start - 1])
         nodes[change.start - 1, 0] = inside[0]
         nodes[change.start : change.start + m, 0] = np.diff(inside)
         return nodes
-    # from the event before `start` to that at `stop` it takes as long as before
-    alone = len(nodes) == m  # nothing of the old word is left: the last flight leads to the first new event
+    # the time from the event before `start` to that at `stop` stays the same
+    alone = len(nodes) == m  # no event of the old word remains: the last flight leads to the first new event
     passed = np.cumsum(np.roll(durations, 1 - change.start)[: change.stop - change.start + 1])
     instants = [_instant(spot, change.start, passed) for spot in change.spots]
     whole = [*instants, instants[0] + durations.sum()] if alone else [0.0, *instants, passed[-1]]
@@ -83,23 +84,23 @@ def durations_after(durations: np.ndarray, nodes: np.ndarray, edit: Edit) -> np.
 
 
 def _instant(spot: Spot, start: int, passed: np.ndarray) -> float:
-    """When the event of a spot happens, `passed` after the event before `start`."""
+    """Time of a spot's event, from the cumulative times `passed` since the event before `start`."""
     event = spot.node if spot.clock is None else spot.clock
-    assert event is not None  # nothing is met where events give way to others
+    assert event is not None  # a change that replaces events meets no contact
     place = event - start
     ahead = 0.5 * (passed[place + 1] - passed[place]) if spot.between else 0.0
     return float(passed[place] + ahead + spot.later * GROWING.first)
 
 
 def changes_at(site: Site, watched: int) -> list[Change]:
-    """The changes that a vanishing margin may ask for, the likeliest first.
+    """Changes of the word that a vanishing margin may cause, the likeliest first.
 
     Parameters
     ----------
     site : Site
-        The cycle must be read so that the margin's event is not the last one.
+        Place of the margin in the cycle, which must be rotated so that the margin's event is not the last one.
     watched : int
-        Index of the contact that is met in the flight after the event, or one of `Watch`.
+        Index of the contact that is met in the flight after the event, or a member of `Watch`.
     """
     word, contacts = site.word, site.word.alphabet.contacts
     if watched >= 0:
@@ -128,7 +129,7 @@ def changes_at(site: Site, watched: int) -> list[Change]:
 
 
 def _swapped(site: Site) -> Change:
-    """Two consecutive events of contacts that do not know each other change their order."""
+    """Exchange two consecutive events of independent contacts."""
     word, place = site.word, site.place
     here, there = word.events[place], word.events[place + 1]
     between = word.mode(place - 1)
@@ -140,13 +141,13 @@ def _swapped(site: Site) -> Change:
 
 
 class Edit(NamedTuple):
-    """A change of the word, and the nodes of its new events, a row each: phase or clock first, then what is held there."""
+    """A change of the word, and the nodes of its new events, one row each: phase or time, then the other unknowns."""
 
     change: Change
     nodes: np.ndarray
 
     def later(self, rounds: int, problem: CycleProblem, p: float) -> Edit:
-        """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
+        """The same edit `rounds` rounds later, in a longer cycle; a round is a cycle of the problem, or half of a symmetric one."""
         if rounds == 0:
             return self
         change, alphabet, places = self.change, problem.word.alphabet, rounds * problem.length

@@ -1,7 +1,7 @@
-"""What changes at a border in some rounds of a cycle only: orbits of less symmetry or longer period that leave there.
+"""Orbits of less symmetry or longer period that leave at a border, because the word changes in some rounds of the cycle only.
 
-A round is a whole cycle, or half a symmetric one. From the derivatives of unchanged and of changed rounds cycles of several are judged: which may be
-stable, and real?
+A round is a whole cycle, or half of a symmetric one. The derivatives of unchanged and of changed rounds decide which cycles of several rounds can
+be real and stable.
 
 At the border every round is the border cycle itself, seen with the old word or with the new one. Next to it the map of a round is, to
 first order, x -> A x + b with the old word and x -> B x + b with the new one, where A and B, the derivatives of these cycles' own
@@ -31,18 +31,17 @@ from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.settings import BORDERING, ROUNDING, SOLVING
 
-MOST = 8  # up to so many rounds of a cycle are joined to one at a border
-UNSTABLE = 1.5  # a largest multiplier from which on a cycle is unstable, though the product is known next to the border only
-BOUNDED = 0.05  # relative change of the derivatives from one size of what grows to the next, where they have a limit
+MOST = 8  # rounds of a cycle at most
+UNSTABLE = 1.5  # largest multiplier of a product computed next to the border, above which the cycle is unstable at the border, too
+BOUNDED = 0.05  # largest relative change of the derivatives, from one size of the growing quantity to the next, if they have a limit
 
 
 def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
-    """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
+    """Find orbits of less symmetry or longer period that leave at a border.
 
-    A round is a whole cycle, or half a symmetric one. A change in every other round breaks the symmetry or doubles the
-    period, and is followed whether it is stable or not; of those that change in one of several rounds, or in all but one
-    (period adding), there may be many at once: the stable ones are followed. `beside` are solutions next to the border with the old word, from
-    far to near.
+    A change in every other round breaks the symmetry or doubles the period; these orbits are yielded whether they are stable or not. Changes in one of
+    several rounds, or in all but one (period adding), may give many orbits; of these only stable ones are yielded. `beside` are solutions
+    with the old word next to the border, from far to near.
     """
     problem, p, orbit, edits = border.problem, border.p, border.orbit, border.edits
     unchanged = [_derivative(near.problem, near.u, near.p) for near in beside[-2:]]
@@ -53,7 +52,7 @@ def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
     first = edits_at(_repeated(problem, orbit, 2)[1], border.margin, problem.length)
     if [edit.change for edit in first] != [edit.change for edit in edits]:
         hopeless = [set() for _ in first]
-    for rounds, changed in choices(MOST):  # the first rounds, as many as `changed`, go through the change
+    for rounds, changed in choices(MOST):  # the first `changed` rounds have the new word
         wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
         if not wanted or (changed > 1 and not problem.forced):
             continue
@@ -75,7 +74,7 @@ def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
 
 
 def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CycleProblem, Orbit]:
-    """The border orbit over some rounds, and the problem of the orbits with that many."""
+    """The problem of orbits with several rounds, and the border orbit repeated over these rounds."""
     if problem.symmetric and rounds % 2:
         whole = orbit.repeat(rounds)  # an odd number of halves, and their mirror image
         return problem.sibling(whole.word, whole.periods, True), whole
@@ -84,9 +83,9 @@ def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CyclePr
 
 
 def _rounds_at(border: Border, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]) -> Rounds | None:
-    """Unchanged and changed rounds of a border cycle; None where they cannot be determined.
+    """Derivatives of unchanged and changed rounds of a border cycle; None if they cannot be determined.
 
-    Solutions with the new word at or next to the border count, real or not. Where those do not tend to the border they say nothing about what is next to it.
+    They come from solutions with the new word at or next to the border, real or virtual, which must tend to the border.
     """
     new = border.begun(edit)
     if new is None:
@@ -97,14 +96,14 @@ def _rounds_at(border: Border, edit: Edit, unchanged: list[tuple[np.ndarray, flo
         if len(climbed) < 2:
             return None
         far, near = (abs(held.p - border.p) for held in climbed)
-        # of the distances at which something has a tenth of its size none is more than a tenth, but for higher orders
+        # a tenth of the size gives at most a tenth of the distance, up to higher orders
         if not near <= max(0.5 * far, BORDERING.placed * parameter_unit(border.problem, border.p)):
             return None
         solutions = [(held.u, held.p) for held in climbed]
     kinds = [unchanged, [_derivative(other, u, p) for u, p in solutions]]
     flow, model = border.orbit.flow, border.orbit.model
     loose = {*flow.loose(model, border.problem.word)} & {*flow.loose(model, other.word)}
-    if loose:  # nothing depends on where such a motion is
+    if loose:  # shifts of the whole motion are left out
         entries = [entry - (not other.forced) for entry in sorted(loose)]
         kinds = [[None if m is None else (_elsewhere(m[0], entries), m[1]) for m in maps] for maps in kinds]
     return judged(kinds)
@@ -115,31 +114,31 @@ def _elsewhere(derivative: np.ndarray, entries: list[int]) -> np.ndarray:
 
 
 def _derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:
-    """Derivative of a round, mirrored where it is half a cycle, and its rounding; None where there is none."""
+    """Derivative of a round (followed by the mirror image if it is half a cycle) and its rounding error; None if it is not finite."""
     found = problem.equations.through_flights(u, p)
     return None if found is None else derived(*found)
 
 
 @np.errstate(all="ignore")
 def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each cycle of some rounds the least and the largest distance of its points from the border, and the product of its rounds.
+    """Smallest and largest distance of a cycle's points from the border, and the product of its rounds, for each of several cycles.
 
     Parameters
     ----------
     maps : ndarray, shape (2, n, n)
         Derivatives of an unchanged and of a changed round.
     keys : ndarray of int, shape (c, 2)
-        Numbers of rounds, and of changed ones, which come first.
+        Number of rounds of each cycle, and of changed ones, which come first.
 
     Returns
     -------
     sides : ndarray, shape (c, 2)
-        det P_i (see the top of this module), counted positive on the side on which its first round is real; NaN where one is no number.
+        Extremes of det P_i (see the top of this module), positive on the side on which the first round is real; NaN if one is not finite.
     products : ndarray, shape (c, n, n)
-        Read from the first point.
+        Products of the rounds from the first point on.
     """
     rounds, changed = keys[:, :1], keys[:, 1:]
-    firsts = np.arange(rounds.max(initial=1))[None, :]  # each cycle is read from each of its points at once
+    firsts = np.arange(rounds.max(initial=1))[None, :]  # all points of all cycles at once
     P = np.broadcast_to(np.eye(maps.shape[1]), (len(keys), firsts.size, *maps.shape[1:]))
     M = maps[(changed[:, 0] > 0).astype(int)]
     for later in range(1, firsts.size):
@@ -161,9 +160,9 @@ class Rounds(NamedTuple):
     Attributes
     ----------
     maps : ndarray, shape (2, m, m)
-        Of an unchanged and of a changed round.
+        Derivatives of an unchanged and of a changed round.
     error : float
-        Of both, relative to their largest entries.
+        Rounding error of both, relative to their largest entries.
     linear : bool
         Whether they have limits at the border, which agree on it.
     further : ndarray, shape (2, m, m), optional
@@ -176,8 +175,8 @@ class Rounds(NamedTuple):
     further: np.ndarray | None = None
 
     def hopeless(self, most: int) -> set[tuple[int, int]]:
-        """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
-        two rounds, not stable.
+        """Cycles, as (number of rounds from 2 to `most`, number of changed ones: 1 or all but one), that are certainly virtual or, with more
+        than two rounds, certainly unstable.
         """
         keys = choices(most)
         sides, products = sides_of_cycles(self.maps, np.array(keys))
@@ -201,7 +200,7 @@ class Rounds(NamedTuple):
         return hopeless
 
     def _rounding(self, rounds: int, changed: int, own: float, other: float) -> float:
-        """Of a product of so many rounds, whose derivatives are no larger than `own` and, of changed ones, `other`."""
+        """Rounding error of a product of rounds, given bounds of the derivatives: `own` of unchanged rounds, `other` of changed ones."""
         try:
             return rounds * self.error * own ** (rounds - changed) * other**changed
         except OverflowError:
@@ -209,20 +208,18 @@ class Rounds(NamedTuple):
 
 
 def _lasts(near: float, further: float) -> bool:
-    """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
+    """Whether a determinant that is positive near the border stays positive up to it: it grows towards the border, or is constant."""
     return near > ROUNDING.decided and further - near <= ROUNDING.decided * near
 
 
 @cache
 def choices(most: int) -> list[tuple[int, int]]:
-    """Numbers of rounds, and of changed ones among them, of the cycles that are looked at."""
+    """Cycles that are tried, as (number of rounds, number of changed ones)."""
     return [(n, changed) for n in range(2, most + 1) for changed in dict.fromkeys((1, n - 1))]
 
 
 def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds | None:
-    """Rounds from the derivatives, with their errors, of unchanged and of changed ones, from far to near the border; None where they
-    cannot be determined.
-    """
+    """Combine derivatives and errors of unchanged and of changed rounds, from far to near the border; None if they are not known well enough."""
     found, further, error, bounded = [], [], 0.0, True
     for maps in kinds:
         if not maps or any(m is None for m in maps):
@@ -240,21 +237,21 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
 
 
 def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:
-    """Whether two derivatives differ by a matrix of rank one: on the border the maps are the same."""
+    """Whether two derivatives differ by a matrix of rank one, as those of maps that agree on the border do."""
     first, second = [*np.linalg.svd(changed - plain, compute_uv=False).tolist(), 0.0][:2]
     return second <= BOUNDED * max(first, float(np.abs(plain).max()))
 
 
 @np.errstate(all="ignore")
 def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, float] | None:
-    """The derivative of a round, the product of those of its flights, and its rounding; None where it is no number.
+    """Derivative of a round, the product of those of its flights, and its rounding error; None if it is not finite.
 
     Parameters
     ----------
     A : ndarray, shape (l, n, n)
-        Derivatives of its flights.
+        Derivatives of the flights; with `D`, derivatives of the flights' equations by the node before each flight.
     D : ndarray, shape (l, n, n), optional
-        If given, both are derivatives of the equations of each flight: by the node before it, and after it.
+        Derivatives of the flights' equations by the node after each flight.
     """
     try:
         factors = A if D is None else -np.linalg.solve(D, A)
@@ -268,7 +265,7 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
 
 
 def escape(symmetric: bool, rounds: int) -> str:
-    """What becomes of the period where only some of so many rounds change."""
+    """Text for the change of symmetry or period if only some of the rounds change."""
     if rounds == 2:
         return f"the {'symmetry breaks' if symmetric else 'period doubles'} at the border"
     if symmetric and rounds % 2 == 0:
