@@ -1,12 +1,9 @@
 """The budget of an atlas: what most starts reach comes first, what is left out is said, results depend on nothing else."""
 
-import numpy as np
 import pytest
 
 import contvines as cv
 from contvines.graph.persistence import same_graph
-from orbits.attractors.search import attracted
-from orbits.flows import simulator_of
 from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
@@ -112,14 +109,3 @@ def test_a_motion_between_the_given_values_that_all_starts_reach():
     ]
     assert [(b.description["word"], b.description["periods"]) for b in holding] == [("LRLt", 1)]
     assert any(low < there < high for low, high in atlas(0).settings["unknown"])
-
-
-def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
-    """Each wait is four times as long as the one before, with no transient to begin with as well: a few looks reach the longest."""
-    absorber, looks = ABSORBER.changed(restitution=0.728, friction=0.747, gravity=0.404), []
-    simulator = simulator_of(absorber, absorber.vector({"amplitude": 1.59760071}))
-    simulator.go_on(np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0]))
-    look = simulator.look
-    monkeypatch.setattr(simulator, "look", lambda longest: looks.append(1) or look(longest))
-    attracted(simulator, 0.0, 32, 1e-7, 1)
-    assert len(looks) <= 2 + np.log(simulator.waiting.slow) / np.log(4.0)

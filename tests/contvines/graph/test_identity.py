@@ -30,6 +30,12 @@ def test_a_cycle_is_the_same_from_any_point_and_any_number_of_times_and_no_fixed
     assert same_form(logistic(fixed, r), logistic(fixed[:1], r))
 
 
+def test_mirror_images_are_one():
+    problem = cv.AlgebraicProblem(lambda x, p: p * x - x**3, [0.0], -0.5, mirror=lambda x: -x)
+    one, other, rest = (problem.canonical(np.array([x]), 0.25) for x in (0.5, -0.5, 0.0))
+    assert same_form(one, other) and not same_form(one, rest)
+
+
 def test_the_end_of_a_branch_belongs_to_it():
     """At a fold, where a branch is cut, no other point of it has the value: its end itself is compared."""
     problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
