@@ -36,11 +36,6 @@ def cycle(flow, states):
     return flow.cycle(t, np.column_stack([part + 0.0 * t for part in states(t)]))
 
 
-def bogdanov_takens(x, p):
-    """Kuznetsov's normal form: folds b1 = b2^2 / 4, Hopf points b1 = 0, b2 < 0, homoclinic b1 = -6 / 25 b2^2 + O(b2^(5/2))."""
-    return [x[1], p.b1 + p.b2 * x[0] + x[0] ** 2 - x[0] * x[1]]
-
-
 def nerve(x, p):
     """FitzHugh-Nagumo."""
     return [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])]
@@ -128,13 +123,12 @@ def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable(tmp_path):
 
 
 def test_loci_of_cycles_meet_at_a_resonance():
-    """Bogdanov and Takens beside a ring: folds of cycles, Neimark-Sacker points and a resonance 1:1."""
-    flow = cv.FlowProblem(
-        lambda x, p: [*ring(x), *bogdanov_takens(x[2:], p)],
-        [1.0, 0, 0, 0],
-        {"b1": -0.05, "b2": -0.3},
-        scale=1.0,
-    )
+    """Bogdanov and Takens beside a ring: folds of cycles b1 = b2^2 / 4, Neimark-Sacker points b1 = 0, b2 < 0, and a resonance 1:1."""
+
+    def rates(x, p):
+        return [*ring(x), x[3], p.b1 + p.b2 * x[2] + x[2] ** 2 - x[2] * x[3]]
+
+    flow = cv.FlowProblem(rates, [1.0, 0, 0, 0], {"b1": -0.05, "b2": -0.3}, scale=1.0)
     orbit = cycle(flow, lambda t: [np.cos(t), np.sin(t), (0.3 - np.sqrt(0.29)) / 2, 0.0])
     graph = cv.diagram(orbit, over="b1", within=(-0.2, 0.2), depth=0)
     assert graph["NS1"].value == pytest.approx(0.0, abs=1e-11)
@@ -151,21 +145,6 @@ def test_loci_of_cycles_meet_at_a_resonance():
     assert point.coefficients["a"] == pytest.approx(-4 * np.pi**2, rel=1e-6)
 
 
-def test_homoclinic_orbits_of_a_long_period_come_from_a_bogdanov_takens_point():
-    flow = cv.FlowProblem(bogdanov_takens, [-0.03, 0.0], {"b1": -0.02, "b2": -0.5})
-    graph = cv.diagram(flow, over="b1", within=(-0.2, 0.2))
-    locus = cv.locus(graph["HC1"], over="b2", within=(-0.6, 0.0), period=120.0)
-    p, q = locus.values.T
-    assert all(locus.orbit(i).period == pytest.approx(120.0) for i in range(0, len(locus), 20))
-    ratio = p / q**2
-    near = np.abs(q) < 0.02
-    assert near.any()
-    assert ratio[near] == pytest.approx(-6 / 25, abs=0.01)
-    assert "too short" in locus.ended[1]
-    with pytest.raises(ValueError, match="homoclinic"):
-        cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2), period=50.0)
-
-
 def test_homoclinic_orbits_begin_at_a_bogdanov_takens_point():
     """b2 = e^2 (10/7 + 288/2401 e^2 + O(e^4)) where b1 = -4 e^4 (Al-Hdaibat, Govaerts, Kuznetsov and Meijer, SIAM J. Appl. Dyn. Syst. 15 (2016) 952)."""
 
@@ -173,18 +152,26 @@ def test_homoclinic_orbits_begin_at_a_bogdanov_takens_point():
         return [x[1], p.b1 + p.b2 * x[1] + x[0] ** 2 + x[0] * x[1]]
 
     flow = cv.FlowProblem(takens, [-0.2, 0.0], {"b1": -0.04, "b2": 0.1})
-    graph = cv.diagram(flow, over="b1", within=(-0.3, 0.1), depth=0)
+    graph = cv.diagram(flow, over="b1", within=(-0.3, 0.1))
     span = {"over": "b2", "within": (-0.3, 0.6)}
     (point,) = cv.locus(graph["HB1"], **span).points.values()
-    locus = cv.locus(point, **span)
-    b1, b2 = locus.values[locus.values[:, 1] > 0.005].T
-    fourth = -b1 / 4.0
-    assert (np.abs(b2 / np.sqrt(fourth) - 10 / 7 - 288 / 2401 * np.sqrt(fourth)) < 0.01 * fourth).all()
+    locus, met = cv.locus(point, **span), cv.locus(graph["HC1"], **span, period=120.0)
+    for values, least in ((locus.values, 0.005), (met.values, 0.02)):
+        b1, b2 = values[values[:, 1] > least].T
+        fourth = -b1 / 4.0
+        assert len(b1) > 20
+        assert (np.abs(b2 / np.sqrt(fourth) - 10 / 7 - 288 / 2401 * np.sqrt(fourth)) < 0.01 * fourth).all()
+    assert all(met.orbit(i).period == pytest.approx(120.0) for i in range(0, len(met), 20))
+    assert met.values[:, 1].min() < 0.01 and "too short" in met.ended[0]
     longer = cv.locus(point, **span, period=400.0)
     assert longer.orbit(0).period == pytest.approx(400.0)
     assert longer.values[:, 1].min() < 0.5 * locus.values[:, 1].min()
-    with pytest.raises(ValueError, match="lies on a locus over"):
-        cv.locus(point, over="b1", within=(-0.3, 0.6))
+    for source, over, period, said in (
+        (point, "b1", None, "lies on a locus over"),
+        (graph["HB1"], "b2", 50.0, "homoclinic"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            cv.locus(source, over=over, within=(-0.3, 0.6), period=period)
 
 
 def test_a_homoclinic_locus_from_a_diagram_and_from_a_bogdanov_takens_point_is_one():
