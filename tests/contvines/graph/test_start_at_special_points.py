@@ -47,8 +47,8 @@ def test_begun_at_special_points_against_another_parameter():
         lambda x, p: [p.r + p.q * x[0] - p.s * x[0] ** 2], [1.0], {"r": 1.0, "s": 1.0, "q": 1.0}
     )
     (fold,) = cv.diagram(flow, over="r", within=(-1.0, 2.0)).of_kind("fold")
-    again = cv.diagram(fold, within=(-1.0, 2.0))
-    assert [fold.value, *values(again, "fold")] == pytest.approx([-0.25, -0.25], abs=1e-12)
+    assert fold.value == pytest.approx(-0.25, abs=1e-12)
+    assert values(cv.diagram(fold, within=(-1.0, 2.0)), "fold") == pytest.approx([-0.25], abs=1e-12)
     other = cv.diagram(fold, over="q", within=(0.5, 1.5))
     assert values(other, "fold") == pytest.approx([1.0], abs=1e-12)
     x, q = other["B1"].points[:, 0], other["B1"].values

@@ -5,21 +5,7 @@ import pytest
 
 import contvines as cv
 import orbits
-from tests.contvines.loci.systems import bautin, cusp
-
-
-def test_folds_of_cycles_end_at_the_generalized_hopf_point():
-    """Cycles fold where b^2 + 4 mu = 0 with b > 0, and are nothing at the origin."""
-    flow = cv.FlowProblem(bautin, [0.0, 0.0], {"mu": -1.0, "b": 1.0})
-    locus = cv.locus(cv.diagram(flow, over="mu", within=(-1, 1))["LP1"], over="b", within=(-1, 2))
-    mu, b = locus.values.T
-    assert mu == pytest.approx(-(b**2) / 4, abs=1e-10) and b.max() == 2.0
-    assert locus.ended == (
-        "the motion becomes an equilibrium, at mu = 0, b = 0",
-        "reaches the end of the interval, b = 2",
-    )
-    (point,) = locus.points.values()
-    assert point.kind == "generalized-hopf" and point.value == pytest.approx((0.0, 0.0), abs=1e-9)
+from tests.contvines.loci.systems import cusp
 
 
 def test_a_table_has_no_digits_that_tell_a_locus_from_its_own_point():

@@ -119,7 +119,10 @@ def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable(tmp_path):
         assert not region.others
     chart.save(tmp_path / "bautin.vines")
     (folds,) = (each for each in cv.load(tmp_path / "bautin.vines").loci.values() if each.kind == "fold")
-    assert folds.at(1.0) == pytest.approx([-0.25], abs=1e-10)
+    mu, b = folds.values.T
+    assert mu == pytest.approx(-(b**2) / 4, abs=1e-10) and b.max() == 2.0
+    assert "the motion becomes an equilibrium, at mu = 0, b = 0" in folds.ended
+    assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_loci_of_cycles_meet_at_a_resonance():
