@@ -145,3 +145,4 @@ def test_a_stretch_goes_up_to_its_special_points(graph):
     short["claims"]["stable"] = True
     with pytest.raises(Refused):
         check(short)
+    assert all(checked(graph["B1"].prove(within=(breaking.value - 1e-5, breaking.value + 1e-4))))

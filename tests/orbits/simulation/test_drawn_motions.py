@@ -69,7 +69,7 @@ HARD = [
     (SMOOTH, {"w_rate": 0.5}, 0.0),  # free drift
     (Cavity(restitution=0.6, friction=0.1, gravity=2.0, slope=0.6), {"w": 0.2}, 0.5),  # slides down
     (Coupled(restitution=0.3, friction=0.2, gravity=0.2, mass_ratio=0.3, damping=0.3, forcing=3.0, frequency=0.9), {"w": 1.0, "w_rate": -1e-8, "v": 2.0}, None),  # impacts pile up
-    (COUPLED.changed(forcing=0.0), {"w": 0.3}, None),  # nothing moves
+    (COUPLED.changed(friction=0.0, excitation=0.0), {}, None),  # at rest when nothing pushes
     (COUPLED.changed(forcing=0.1, friction=1.0), {"w": 0.3, "v": 0.1}, None),  # sticks for ever
     (COUPLED.changed(frequency=0.985, slope=0.2), {"v_rate": 1.0}, None),
 ]  # fmt: skip
