@@ -47,7 +47,7 @@ class Chart(Resumable):
         Points of codimension two, by label.
     regions : list of Region
     crossings : list of dict
-        Crossings of two unrelated loci: "on", "value", "error"; see :func:`contvines.loci.charting_run.crossings`.
+        Crossings of two unrelated loci: "on", "value", "error"; see `contvines.loci.charting_run.crossings`.
     model : dict
         Name and parameters of the model.
     settings : dict

@@ -55,7 +55,7 @@ The contract:
     measures in radians modulo 2 pi. ``at_each_point`` returns a measure at each of the n points of m cycles, shape (m, n), or None.
     ``orbit(u, p)`` returns a solution as an object for users, ``replay(u, p)`` the largest deviation of a simulation from it (None: it cannot
     be simulated), and ``simulated_attractors(p)`` the motions on which simulated starts settle, as JSON-able dicts. ``describe()`` returns a
-    JSON-able description, from which the factory that it names rebuilds the problem (:mod:`contvines.problems.registry`).
+    JSON-able description, from which the factory that it names rebuilds the problem (`contvines.problems.registry`).
 
 The protocol `Problem` consists of five smaller ones, `Equations`, `Spectrum`, `Symmetries`, `Borders` and `Description`; a function
 requires the one that it uses. They are structural: a problem need not inherit from them. :class:`ProblemDefaults` implements the members
