@@ -6,7 +6,6 @@ integrated event by event, multipliers by central differences, and the parameter
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
 
 import contvines as cv
 from orbits import Absorber
@@ -15,11 +14,14 @@ from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
 
-BREAKING = "0.5282903125517541"  # symmetric LR, half map's multiplier -1
-GRAZE = "0.7322667847680374"  # asymmetric LR, w' touches 0 in the long flight
-STICK_TURN = "0.7489568973481195"  # the stick's reserve a - |v''| is used up: a turn comes before it
-TWO_TURNS = "0.7982897117006584"  # the second zero of w' is a turn as well
-DOUBLING = "1.1282649657742850"  # LRtt, multiplier -1
+# Kinds of the points that are met, C^2 there, and the word beyond
+ROUTE = [
+    ("symmetry-breaking", 0.5282903125517541, "LR"),  # symmetric LR, half map's multiplier -1
+    ("velocity-graze", 0.7322667847680374, "LRs"),  # asymmetric LR, w' touches 0 in the long flight
+    ("stick", 0.7489568973481195, "LRts"),  # the stick's reserve a - |v''| is used up: a turn comes before it
+    ("stick", 0.7982897117006584, "LRtt"),  # the second zero of w' is a turn as well
+    ("period-doubling", 1.1282649657742850, "LRttLRtt"),  # LRtt, multiplier -1
+]
 
 
 @pytest.fixture(scope="module")
@@ -30,37 +32,25 @@ def graph():
 
 
 def route(graph):
-    """Branches and points met from the symmetry breaking to the period-4-impact orbits, by the switches
-    alone."""
-    by_point = {}
-    for switch in graph.switches:
-        by_point.setdefault(switch.point, []).append(switch)
-    start = next(p for p in graph.special.values() if p.kind == "symmetry-breaking")
-    steps = [(start, graph[by_point[start.label][0].target])]
-    while steps[-1][0].kind != "period-doubling":
-        here = steps[-1][1]
-        onwards = [
-            p for p in graph.special.values()
-            if p.branch == here.label and p.kind in ("velocity-graze", "stick", "period-doubling")
-        ]  # fmt: skip
-        assert len(onwards) == 1
-        steps.append((onwards[0], graph[by_point[onwards[0].label][0].target]))
+    """Points met from the symmetry breaking to the period-4-impact orbits by the switches alone, and the branches behind them."""
+    targets = {switch.point: graph[switch.target] for switch in reversed(graph.switches)}
+    (point,) = graph.of_kind("symmetry-breaking")[:1]
+    steps = [(point, targets[point.label])]
+    while point.kind != "period-doubling":
+        here, kinds = steps[-1][1].label, ("velocity-graze", "stick", "period-doubling")
+        (point,) = (p for p in graph.special.values() if p.branch == here and p.kind in kinds)
+        steps.append((point, targets[point.label]))
     return steps
 
 
 def test_the_diagram_walks_the_real_route(graph):
     steps = route(graph)
-    words = [branch.description["word"] for _, branch in steps]
-    assert [sorted(word) for word in words] == [sorted(w) for w in ("LR", "LRs", "LRts", "LRtt", "LRttLRtt")]
     assert [branch.description["periods"] for _, branch in steps] == [1, 1, 1, 1, 2]
-    assert [branch.description["impacts"] for _, branch in steps][-1] == 4
-    assert all(point.real and branch.real for point, branch in steps)
-    assert [point.kind for point, _ in steps] == [
-        "symmetry-breaking", "velocity-graze", "stick", "stick", "period-doubling",
-    ]  # fmt: skip
-    told = [float(value) for value in (BREAKING, GRAZE, STICK_TURN, TWO_TURNS, DOUBLING)]
-    for (point, _), value in zip(steps, told, strict=True):
-        assert point.value**2 == pytest.approx(value, abs=1e-10)
+    assert steps[-1][1].description["impacts"] == 4
+    for (point, branch), (kind, square, word) in zip(steps, ROUTE, strict=True):
+        assert point.kind == kind and sorted(branch.description["word"]) == sorted(word)
+        assert point.real and branch.real
+        assert point.value**2 == pytest.approx(square, abs=1e-10)
         assert point.replay is not None and point.replay < 1e-9
         assert point.residual < 1e-12
 
@@ -87,20 +77,18 @@ def test_multipliers_jump_at_the_graze(graph):
 
 @pytest.mark.parametrize(
     ("friction", "gravity", "mass_ratio"),
-    [("0.5", "0.211", "0.006"), ("0.1", "0.422", "0.006"), ("0.3", "0.355", "0.006"), ("0.8", "0.4", "0.05")],
+    [(0.5, 0.211, 0.006), (0.1, 0.422, 0.006), (0.3, 0.355, 0.006), (0.8, 0.4, 0.05)],
 )
 def test_sliding_lives_between_its_bounds(friction, gravity, mass_ratio):
     """`tt` from C^2 = h^2 (1 + 4/pi^2), where its turns become sticks, to 1 + h^2, where it grazes the
     walls."""
-    h = (1 + mpf(mass_ratio)) * mpf(friction) * mpf(gravity) * mp.pi / 2
-    absorber = Absorber(
-        restitution=0.76, friction=float(friction), gravity=float(gravity), mass_ratio=float(mass_ratio)
-    )
-    middle = float(mp.sqrt((h**2 * (1 + 4 / mp.pi**2) + 1 + h**2) / 2))
-    graph = cv.diagram(absorber.orbit("tt", amplitude=middle), over="amplitude", within=(0.02, 1.6), depth=0)
+    h = (1 + mass_ratio) * friction * gravity * np.pi / 2
+    bounds = h**2 * (1 + 4 / np.pi**2), 1 + h**2
+    absorber = Absorber(restitution=0.76, friction=friction, gravity=gravity, mass_ratio=mass_ratio)
+    orbit = absorber.orbit("tt", amplitude=np.sqrt(sum(bounds) / 2))
+    graph = cv.diagram(orbit, over="amplitude", within=(0.02, 1.6), depth=0)
     low, high = graph["B1"].range
-    assert low**2 == pytest.approx(float(h**2 * (1 + 4 / mp.pi**2)), abs=1e-10)
-    assert high**2 == pytest.approx(float(1 + h**2), abs=1e-10)
+    assert (low**2, high**2) == pytest.approx(bounds, abs=1e-10)
     ends = {p.kind: p for p in graph.special.values() if p.branch == "B1" and p.real}
     assert ends["stick"].value == pytest.approx(low, abs=1e-14)
     assert ends["wall-graze"].value == pytest.approx(high, abs=1e-14)

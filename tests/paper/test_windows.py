@@ -13,68 +13,56 @@ from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
 
-
 # amplitudes C
-THREE = {"fold": "1.0037342178", "period-doubling": "1.4125623672", "velocity-graze": "1.9824794254"}
-FOUR = {"fold": "2.4791282575", "symmetry-breaking": "3.0980096865", "velocity-graze": "5.0515380711"}
+THREE = {"fold": 1.0037342178, "period-doubling": 1.4125623672, "velocity-graze": 1.9824794254}
+FOUR = {"fold": 2.4791282575, "symmetry-breaking": 3.0980096865, "velocity-graze": 5.0515380711}
 
 
 @pytest.fixture(scope="module")
-def three():
-    found = find_attractor(ABSORBER, {"w_rate": 0.2}, amplitude=1.2)
-    assert (found.impacts, found.periods, found.word.canonical().text) == (3, 1, "LRLt")
-    return cv.diagram(found.orbit, over="amplitude", within=(0.2, 3.5), depth=1)
+def windows():
+    """The first orbit of each window with its graph."""
+    starts = ((0.2, 1.2, 3.5), (1.0, 2.6, 8.0))
+    found = [(find_attractor(ABSORBER, {"w_rate": rate}, amplitude=at), end) for rate, at, end in starts]
+    return [(one, cv.diagram(one.orbit, over="amplitude", within=(0.2, end), depth=1)) for one, end in found]
 
 
-@pytest.fixture(scope="module")
-def four():
-    found = find_attractor(ABSORBER, {"w_rate": 1.0}, amplitude=2.6)
-    assert (found.impacts, found.periods, found.symmetric) == (4, 1, True)
-    return cv.diagram(found.orbit, over="amplitude", within=(0.2, 8.0), depth=1)
+def points_of(graph):
+    return {p.kind: p for p in graph.special.values() if p.branch == "B1" and p.real}
 
 
-def points_of(graph, label="B1"):
-    return {p.kind: p for p in graph.special.values() if p.branch == label and p.real}
+def test_the_motions_that_are_found(windows):
+    (three, _), (four, _) = windows
+    assert (three.impacts, three.periods, three.word.canonical().text) == (3, 1, "LRLt")
+    assert (four.impacts, four.periods, four.symmetric) == (4, 1, True)
 
 
-def test_window_of_three_impacts(three):
-    """From a fold to a velocity graze; stable up to the doubling. All but the graze bound what a simulation finds."""
-    points = points_of(three)
-    for kind, value in THREE.items():
-        assert points[kind].value == pytest.approx(float(value), abs=1e-9)
+@pytest.mark.parametrize(("which", "values"), [(0, THREE), (1, FOUR)])
+def test_a_window_from_a_fold_to_a_velocity_graze(windows, which, values):
+    """Stable up to the doubling or symmetry breaking. All but the graze bound what a simulation finds."""
+    graph = windows[which][1]
+    points = points_of(graph)
+    for kind, value in values.items():
+        assert points[kind].value == pytest.approx(value, abs=1e-9)
         assert points[kind].replay < 1e-8
-    branch = three["B1"]
-    assert branch.range == pytest.approx((points["fold"].value, points["velocity-graze"].value), abs=1e-14)
-    assert branch.stable_intervals() == [
-        pytest.approx((points["fold"].value, points["period-doubling"].value), abs=1e-12)
-    ]
-    # the unstable half goes from the fold to the graze of a wall, where one of the three impacts vanishes
-    assert points["wall-graze"].value == pytest.approx(1.314658555, abs=1e-9)
-    impacts = points["wall-graze"].orbit.events.rate_post[
-        [letter in "LR" for letter in points["wall-graze"].orbit.word.events]
-    ]
-    assert np.abs(impacts).min() < 1e-10
+    fold, stable, graze = (points[kind].value for kind in values)
+    assert graph["B1"].range == pytest.approx((fold, graze), abs=1e-14)
+    assert graph["B1"].stable_intervals() == [pytest.approx((fold, stable), abs=1e-12)]
 
 
-def test_window_of_four_impacts(four):
-    """Symmetric, two impacts at each wall: from a fold to a velocity graze in both long flights at once."""
-    points = points_of(four)
-    for kind, value in FOUR.items():
-        assert points[kind].value == pytest.approx(float(value), abs=1e-9)
-        assert points[kind].replay < 1e-8
-    branch = four["B1"]
-    assert branch.range == pytest.approx((points["fold"].value, points["velocity-graze"].value), abs=1e-14)
-    assert branch.stable_intervals() == [
-        pytest.approx((points["fold"].value, points["symmetry-breaking"].value), abs=1e-12)
-    ]
-    # the unstable half ends where an impact becomes a turn; there both P_2^1 with turns and P_3^1 begin
-    graze = points["wall-graze"]
+def test_where_the_unstable_halves_end(windows):
+    """At the graze of a wall: one of three impacts vanishes; one of four becomes a turn, where P_2^1 with turns and P_3^1 begin."""
+    three, four = (graph for _, graph in windows)
+    graze = points_of(three)["wall-graze"]
+    assert graze.value == pytest.approx(1.314658555, abs=1e-9)
+    impacts = [letter in "LR" for letter in graze.orbit.word.events]
+    assert np.abs(graze.orbit.events.rate_post[impacts]).min() < 1e-10
+    graze = points_of(four)["wall-graze"]
     words = [four[s.target].description for s in four.switches if s.point == graze.label]
     assert sorted(word["impacts"] for word in words) == [2, 3]
 
 
-def test_ends_of_the_windows_in_eighty_digits(three, four):
-    for graph in (three, four):
+def test_ends_of_the_windows_in_eighty_digits(windows):
+    for _, graph in windows:
         for kind, point in points_of(graph).items():
             if kind in ("fold", "period-doubling", "symmetry-breaking"):
                 there = exact(point.orbit)
