@@ -19,12 +19,6 @@ def test_a_gif_has_so_many_pictures(orbit, tmp_path):
         assert picture.n_frames == 4
 
 
-def test_an_html_page_plays_by_itself(orbit, tmp_path):
-    orbit.animate(tmp_path / "orbit.html", seconds=0.5, rate=4, figsize=(3, 2))
-    page = (tmp_path / "orbit.html").read_text()
-    assert "<script" in page and "image/png" in page
-
-
 def test_the_absorber_stays_between_its_walls(orbit):
     """At every picture the absorber is within the cavity, and at some it touches both walls (to the pictures' distance)."""
     made = orbit.animate(seconds=2.0, rate=20, figsize=(3, 2))

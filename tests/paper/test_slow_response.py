@@ -1,8 +1,6 @@
 """The slow flow's response by continuation against its closed form: two ways to the same folds and Hopf
 points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -12,19 +10,11 @@ from orbits import multiple_scales as ms
 pytestmark = pytest.mark.slow
 
 
-def problem(flow, start, regular, manifold="impacting"):
+def followed(flow, start, within, regular=False, manifold="impacting"):
     response = ms.SlowResponse(flow, "detuning", manifold, regular=regular)
-    u, p = response.start(start)
-    spectrum = "none" if regular else "flow"
-    return cv.AlgebraicProblem(
-        response,
-        u,
-        p,
-        "detuning",
-        response.jacobian,
-        response.derivative,
-        spectrum=spectrum,
-    )
+    given = (*response.start(start), "detuning", response.jacobian, response.derivative)
+    problem = cv.AlgebraicProblem(response, *given, spectrum="none" if regular else "flow")
+    return cv.diagram(problem, within=within)
 
 
 def drawn(seed):
@@ -39,28 +29,21 @@ def drawn(seed):
             return flow, sigma
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_folds_and_hopf_points(seed):
-    flow, sigma = (ms.SlowFlow(), -2.58) if seed == 0 else drawn(seed)
-    curves = ms.frequency_response(flow, points=3000)
-    points = [p for c in curves for p in ms.special_points(c)]
-    folds = sorted(p.state.detuning for p in points if p.kind == "fold")
-    hopf = sorted(p.state.detuning for p in points if p.kind == "hopf")
-    graph = cv.diagram(problem(flow, sigma, True), within=(-30.0, 30.0))
-    inside = [
-        s.value for s in graph.special.values() if s.kind == "fold" and s.u[0] > 0
-    ]  # B < 0 is no motion
-    assert sorted(inside) == pytest.approx(folds, abs=1e-9)
-    flowing = cv.diagram(problem(flow, sigma, False), within=(-30.0, 30.0))
-    turned = [s.value for s in flowing.special.values() if s.kind == "hopf" and s.u[0] > 0]
-    assert sorted(turned) == pytest.approx(hopf, abs=1e-9)
-    for s in flowing.special.values():
-        if s.kind == "branch-point":  # one eigenvalue passes through infinity: the manifold's lowest point
-            assert s.u[0] == pytest.approx(flow.activation.velocity, abs=1e-6)
+@pytest.mark.parametrize(("flow", "sigma"), [(ms.SlowFlow(), -2.58), drawn(1)])
+def test_folds_and_hopf_points(flow, sigma):
+    points = [p for curve in ms.frequency_response(flow, points=3000) for p in ms.special_points(curve)]
+    for kind, regular in (("fold", True), ("hopf", False)):
+        graph = followed(flow, sigma, (-30.0, 30.0), regular)
+        wanted = sorted(p.state.detuning for p in points if p.kind == kind)
+        found = sorted(p.value for p in graph.of_kind(kind) if p.u[0] > 0)  # B < 0 is no motion
+        assert found == pytest.approx(wanted, abs=1e-9)
+    for point in graph.of_kind("branch-point"):
+        # one eigenvalue passes through infinity: the manifold's lowest point
+        assert point.u[0] == pytest.approx(flow.activation.velocity, abs=1e-6)
 
 
 def test_sliding_response_has_no_special_point():
-    graph = cv.diagram(problem(ms.SlowFlow(), -2.58, False, "sliding"), within=(-6.0, -1.3))
-    assert not [s for s in graph.special.values() if s.kind not in ("end",)]
-    (branch,) = graph.branches.values()
+    graph = followed(ms.SlowFlow(), -2.58, (-6.0, -1.3), manifold="sliding")
+    assert not [s for s in graph.special.values() if s.kind != "end"]
+    (branch,) = graph
     assert np.all(branch.stable)

@@ -66,8 +66,10 @@ def test_show_keeps_the_contract(run):
     assert {s[end] for s in data["switches"] for end in ("from", "to")} <= labels
 
 
-def test_orbit_of_a_label_is_the_object_of_the_contract(run):
+def test_orbit_of_a_label_is_the_object_of_the_contract(run, folder):
     data = run.json("orbit s.vines SB1 --animate o.html")
+    page = (folder / "o.html").read_text()
+    assert "<script" in page and "image/png" in page
     assert len(data["nodes"]) == 2
     assert all(set(n) >= {"event", "phase", "B_pre", "B_post", "w", "w_rate"} for n in data["nodes"])
     # a symmetry breaking: one multiplier of the full period is +1 (MODEL: -1 of the half map)
