@@ -11,6 +11,7 @@ from contvines.bifurcation.kinds import BORDERS
 from orbits.attractors import find_attractor
 from orbits.simulation import replay
 from tools.fuzz import neighbours, structure
+from tools.fuzz.between import Between
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact
 from tools.fuzz.searching import LIMITS, search
@@ -30,8 +31,6 @@ FOUND = [
     ("absorber", 404, 339),  # a cascade stepped over: a branch point where nothing is singular
     ("absorber", 404, 41),  # a branch that comes back to others where it does not meet them
     ("coupled", 404, 64),  # a fold just before a border
-    ("cavity", 408, 97),  # a virtual branch that is real between two of its points
-    ("coupled", 408, 229),  # the same
     ("cavity", 409, 259),  # right beside a period doubling, signs of rounding
     ("cavity", 409, 376),  # two borders of different motions, 1e-12 apart
     ("coupled", 414, 178),  # a border beyond which all that was tried came to nothing, without a reason
@@ -41,7 +40,6 @@ FOUND = [
     ("cavity", 419, 25),  # the same
     ("cavity", 418, 297),  # multipliers at grazes of branches 6e-12 and 1e-13 long
     ("cavity", 419, 165),  # four rounds, home to what seemed two and is one
-    ("coupled", 4817, 45),  # a doubling 2e-10 behind where a pair splits
     ("level", 2127, 127),  # a branch 5e-8 beside the end of another one with the same word
     ("level", 4411, 109),  # the first point of a branch beyond a border, behind the end of the interval
     ("level", 4411, 25),  # stable motions over 1e-8 of the parameter, between a doubling and a border
@@ -88,6 +86,31 @@ UNRESOLVED = [
 @pytest.mark.parametrize(("kind", "salt", "seed"), UNRESOLVED)
 def test_signs_of_rounding_where_a_branch_begins_are_nothing_unresolved(kind, salt, seed):
     assert not diagram(kind, salt, seed).unresolved
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed", "word", "value"),
+    [("cavity", 97, "LRts", 1.020020423), ("coupled", 229, "LsRs", 0.947625)],
+)
+def test_a_virtual_branch_is_real_where_the_simulation_follows_it(kind, seed, word, value):
+    """Between two points of it, margins that were lost are positive again and others are not yet lost."""
+    graph, followed = diagram(kind, 408, seed), []
+    for branch in graph:
+        passes = np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) < 0.0)
+        for i in passes if branch.description["word"] == word else ():
+            share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
+            seen = replay(Between(branch, graph.within).orbit(int(i), float(share)))
+            assert (seen.matches and seen.error < 1e-8) == branch.real
+            followed.append(branch.real)
+    assert followed.count(True) == 1
+
+
+def test_a_doubling_right_behind_where_a_pair_splits():
+    """Outside the circle a pair becomes two real multipliers, one of which enters 2e-10 (frequency) later: at -1 in eighty digits."""
+    points = diagram("coupled", 4817, 45).of_kind("period-doubling")
+    found = exact(min(points, key=lambda p: abs(p.value - 1.03026475831)).orbit)
+    assert abs(found.shift) < 1e-14
+    assert np.abs(found.multipliers + 1.0).min() < 1e-6
 
 
 def test_a_slow_passage_beside_a_fold_is_no_attractor():
