@@ -1,1 +1,1 @@
-"""Pseudo-arclength continuation: one algorithm, compiled or interpreted."""
+"""Pseudo-arclength continuation of one branch: one algorithm, in the native core or in Python."""

@@ -1,8 +1,8 @@
-"""Bracketing: the root of a function of one variable, one evaluation at a time.
+"""Bracketing: find the root of a function of one variable, one evaluation at a time.
 
-Chandrupatla's method (Adv. Eng. Software 28 (1997) 145): bisection with inverse quadratic steps where they are safe; the function need
-not be continuous. Where these are not safe, as at a jump or a kink, secants on one side of the zero take the place of bisection: what is
-beyond a jump says nothing of the zero, which is that of the secant on one side.
+Chandrupatla's method (Adv. Eng. Software 28 (1997) 145): bisection, with inverse quadratic steps where they are safe; the function need
+not be continuous. If these steps are not safe, as at a jump or a kink, secants through points on one side of the zero replace bisection, as
+values on the other side give no information on the zero.
 
 native/march.hpp has the same.
 """
@@ -17,15 +17,15 @@ from contvines.shared.numbers import TINY
 
 from .settings import SOLUTION
 
-BISECTIONS = 2  # before a function is taken for one with a jump or a kink at its zero
-ENOUGH = 0.25  # part of a function's value that a secant may leave
-SHORT = 0.02  # part of the way back that is gone where a secant has gone too far
-MOST = 100  # evaluations
+BISECTIONS = 2  # number of bisections before secants on one side are tried
+ENOUGH = 0.25  # a secant succeeds if it reduces the function's value to less than this part
+SHORT = 0.02  # step back after a secant beyond the zero, as a part of the bracket
+MOST = 100  # largest number of evaluations
 
 
 @dataclass
 class Side:
-    """How many points have been on one side of zero, the last but one, and the last one."""
+    """Points with one sign of f: their number, the last but one (xa, fa), and the last one (xb, fb)."""
 
     points: int = 0
     xa: float = math.nan
@@ -36,16 +36,16 @@ class Side:
 
 @dataclass
 class Bracket:
-    """Two places between which f has its zero, x1 and x2.
+    """A bracket [x1, x2] of a zero of f.
 
     Parameters
     ----------
     x1, f1, p1, x2, f2, p2 : float
-        Either end, f there, and what else is to be kept of it; f1 and f2 of opposite sign, or one of them zero.
+        The ends, f there, and another number that belongs to each end (its parameter value); f1 and f2 have opposite signs, or one is zero.
     tolerance : float
         Width of the final bracket relative to the first one.
     jump : float
-        Give up where f still changes by more than this over a small part of the first bracket: f has a jump there.
+        Stop if f still changes by more than this over a small part of the first bracket: f has a jump there.
     """
 
     x1: float
@@ -57,10 +57,10 @@ class Bracket:
     tolerance: float
     jump: float
     count: int = 0
-    again: bool = False  # whether f could not be evaluated the last time
-    wait: int = BISECTIONS
-    aimed: int | None = None  # the side of which the last place was a secant's
-    beyond: bool = False
+    again: bool = False  # whether the last evaluation failed
+    wait: int = BISECTIONS  # number of bisections before the next secant
+    aimed: int | None = None  # the side whose secant gave the last point
+    beyond: bool = False  # whether a secant has ended beyond the zero
     sides: tuple[Side, Side] = field(default_factory=lambda: (Side(), Side()))
 
     def __post_init__(self) -> None:
@@ -72,7 +72,7 @@ class Bracket:
         return self.x1 if abs(self.f1) < abs(self.f2) else self.x2
 
     def narrow(self, f: Callable[[float], tuple[float, float]]) -> float:
-        """Find the zero of f(x), which also returns what else is to be kept of x; the last place that was looked at."""
+        """Narrow the bracket; f(x) returns its value and the other number of x. Returns the last point that was evaluated, NaN if none was."""
         if self.f1 == 0.0 or self.f2 == 0.0:  # one end is the root itself
             if self.f2 == 0.0:
                 self.x1, self.f1, self.p1 = self.x2, self.f2, self.p2
@@ -85,9 +85,9 @@ class Bracket:
         return x
 
     def follow(self, x: float, fx: float, px: float) -> float:
-        """Take notice of f(x); the next place to look at, NaN where that is enough.
+        """Add the value f(x), and return the next point to evaluate; NaN at the end.
 
-        Where f cannot be evaluated the place is replaced by one nearby, once.
+        If f cannot be evaluated, another point is tried, once.
         """
         if not math.isfinite(fx):
             if self.again:
@@ -123,21 +123,21 @@ class Bracket:
         return x1 + min(1.0 - limit, max(limit, t)) * (x2 - x1)
 
     def _add(self, x: float, fx: float) -> None:
-        """Keep a point of one side; a secant that has ended beyond the zero, or has left too much, is not trusted again soon."""
+        """Add a point to its side, and judge the secant that gave it: after one that reduced f too little, bisections follow."""
         own = int(fx > 0.0)
         side, aimed = self.sides[own], self.aimed
         if aimed is not None and aimed != own:
             self.beyond = True
         elif aimed is not None and not abs(fx) < ENOUGH * abs(side.fb):
-            self.wait = BISECTIONS  # it is not that smooth
+            self.wait = BISECTIONS  # f is not smooth enough
         side.points += 1
         side.xa, side.fa, side.xb, side.fb = side.xb, side.fb, x, fx
         self.aimed = None
 
     def _ahead(self) -> float:
-        """Where to look next, where inverse quadratic steps are not safe."""
+        """Return the next point if an inverse quadratic step is not safe: from a secant on one side, or the middle."""
         x1, x2 = self.x1, self.x2
-        if self.beyond:  # a secant ended beyond the zero, hardly: a little before its end
+        if self.beyond:  # a secant ended just beyond the zero: step back a little
             self.beyond, self.wait = False, 0
             return x1 + SHORT * (x2 - x1)
         nearest, where = math.inf, 0.5 * (x1 + x2)

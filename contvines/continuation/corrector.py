@@ -1,7 +1,7 @@
-"""Corrector: Newton's method on the bordered system, along a branch and for single points; and its sums over the unknowns.
+"""Corrector: Newton's method on the bordered system, along a branch and for single points.
 
-For problems in Python, where every unknown has its scale; native/march.hpp has the same for compiled ones, whose unknowns all have scale 1 and one
-weight.
+This is the version for problems in Python, in which every unknown has its own scale; native/march.hpp has the same for compiled problems, whose
+unknowns all have scale 1 and the same weight.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from .settings import SOLUTION
 if TYPE_CHECKING:
     from ..problems.protocol import KernelFunctions
 
-STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
+STRAY = 0.3  # largest distance of a point from the interpolation between the chord's ends, relative to the chord; else it is on another branch
 
 
 def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -> float:
-    """Largest entry of a correction, relative to scale + abs(unknown); infinity where it is not finite."""
+    """Return the largest entry of a correction, relative to scale + abs(unknown); inf if it is not finite."""
     part = np.abs(u)
     part += metric.scale[:-1]
     np.divide(step[:-1], part, out=part)
@@ -40,7 +40,7 @@ def plane(
     metric: Metric,
     border: np.ndarray,
 ) -> float:
-    """Fill `border` with the plane through (u, p) across a tangent; returns border.(u, p)."""
+    """Fill `border` with the normal of the plane through (u, p) orthogonal to a tangent; return border.(u, p)."""
     np.multiply(metric.weights, tangent, out=border)
     return dot(border, u, len(u)) + float(border[-1]) * p
 
@@ -54,7 +54,7 @@ def compare(
     guess: float,
     metric: Metric,
 ) -> tuple[float, float, float]:
-    """Length of a tangent, cosine of its angle with the unit tangent before, distance of a point from its guess."""
+    """Return the length of a tangent, the cosine of its angle with the previous unit tangent, and the distance of a point from its guess."""
     weighted = metric.weights * tangent
     norm = math.sqrt(dot(weighted, tangent))
     gap = u - guess_u
@@ -68,14 +68,14 @@ def orient(
     border: np.ndarray,
     metric: Metric,
 ) -> tuple[float, float, float]:
-    """Length of a tangent, its inner product with another vector, and border.tangent; the length is infinite where one is not finite."""
+    """Return the length of a tangent, its inner product with another vector, and border.tangent; the length is inf if an entry is not finite."""
     weighted = metric.weights * tangent
     norm = math.sqrt(dot(weighted, tangent)) if np.isfinite(tangent).all() else math.inf
     return norm, dot(weighted, along), dot(border, tangent)
 
 
 def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> float:
-    """Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p. See :class:`contvines.bifurcation.locate.Segment`."""
+    """Interpolate with the cubic Hermite polynomial at s in [0, 1]: fill u and guess, return p. See :class:`contvines.bifurcation.locate.Segment`."""
     a, b = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2
     c, d = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0)
     guess[:] = a * chord[0] + b * chord[1] + c * chord[2] + d * chord[3]
@@ -84,7 +84,7 @@ def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> fl
 
 
 def distance(u: np.ndarray, p: float, guess: np.ndarray, metric: Metric) -> float:
-    """Distance of (u, p) from a guess."""
+    """Return the distance of (u, p) from a guess."""
     gap = u - guess[:-1]
     return math.sqrt(dot(metric.weights[:-1] * gap, gap) + metric.of_parameter * (p - float(guess[-1])) ** 2)
 
@@ -98,9 +98,10 @@ def extrapolate(
     metric: Metric,
     u: np.ndarray,
 ) -> float:
-    """Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p.
+    """Extrapolate with the cubic Hermite polynomial over a length h from points i - 2 and i - 1: fill u, return p.
 
-    The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order).
+    The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order). With a single point, or a much longer
+    step, the extrapolation is linear.
     """
     here, value, point = tangents[i - 1], float(values[i - 1]), points[i - 1]
     if i >= 2:
@@ -121,7 +122,7 @@ def extrapolate(
             way += np.multiply(there, b, out=bend)
             np.add(chord, way[:-1], out=u)
             if metric.moving is not None:
-                # nothing corrects these: their errors grow by the formula above, and do not by that of Adams and Bashforth
+                # no equation corrects these unknowns: errors grow with the formula above, but not with that of Adams and Bashforth
                 held = metric.moving.held
                 u[held] = point[held] + h * (
                     (1.0 + 0.5 * share) * here[:-1][held] - 0.5 * share * there[:-1][held]
@@ -137,10 +138,10 @@ class Corrector:
     Parameters
     ----------
     kernels, data, work
-        Of the problem.
+        Kernels, data and workspace of the problem.
     metric : Metric
     noise : float
-        Accuracy to which corrections can be obtained at all, because the equations are not smooth below it; 0 for roundoff.
+        Noise of the equations: least size of corrections that can be computed; 0 if there is only rounding.
     known : ndarray
         Bracket of a search; see :mod:`contvines.continuation.layout`.
     scratch : Scratch
@@ -162,7 +163,7 @@ class Corrector:
     def improve(
         self, u: np.ndarray, p: float, sweep: int, residual: float, before: float, tolerance: float
     ) -> tuple[float, float, int]:
-        """Add the Newton correction of unknowns and parameter, unless Newton's method diverges.
+        """Add the Newton correction to unknowns and parameter, unless Newton's method diverges.
 
         Parameters
         ----------
@@ -175,14 +176,15 @@ class Corrector:
         before : float
             Size of the correction before this one.
         tolerance : float
+            Largest last correction.
 
         Returns
         -------
         p : float
         size : float
-            Of the correction, relative to the scale + abs(unknown).
+            Size of the correction, relative to the scale + abs(unknown).
         verdict : int
-            1 when converged, -1 when diverged, else 0.
+            1 if converged, -1 if diverged, else 0.
         """
         step, noise = self.scratch.step, self.noise
         size = correction_size(step, u, p, self.metric)
@@ -201,7 +203,7 @@ class Corrector:
                 return p, size, 1
             if size <= SOLUTION.stalled and ratio > 0.3 and residual < SOLUTION.solved:
                 return p, size, 1
-            # corrections that are noise do not shrink, whatever the tolerance
+            # corrections at the level of the noise do not shrink
             if size <= 30.0 * noise and ratio > 0.1:
                 return p, size, 1
         return p, size, 0
@@ -209,7 +211,7 @@ class Corrector:
     def correct(
         self, u: np.ndarray, p: float, target: float, tolerance: float, max_sweeps: int
     ) -> tuple[float, int, float, float]:
-        """Newton's method for F(u, p) = 0, border.(u, p) = target, with the border at hand; u is updated in place.
+        """Solve F(u, p) = 0, border.(u, p) = target by Newton's method; u is updated in place, the border is that of the scratch arrays.
 
         Returns
         -------
@@ -219,7 +221,7 @@ class Corrector:
         sign : float
             Sign of the bordered determinant at the last linearisation, before the last correction.
         size : float
-            Last correction, relative to the scale + abs(unknown).
+            Size of the last correction, relative to the scale + abs(unknown).
         """
         kernels, data, work, (_, border, step, tangent, _) = self.kernels, self.data, self.work, self.scratch
         size, sign, n, of_parameter = 0.0, 0.0, len(u), float(border[-1])
@@ -235,7 +237,7 @@ class Corrector:
         return p, -1, sign, size
 
     def point(self, way: Way, s: float, found: Found, i: int) -> None:
-        """The solution at a place on a chord, and everything about it, into entry i of what is found."""
+        """Solve for the point at position s on a chord, and write it with tangent, row and numbers to entry i of `found`."""
         kernels, data, work = self.kernels, self.data, self.work
         border, u, tangent = way.border, found.u[i], found.tangents[i]
         p = hermite(way.chord, s, u, self.scratch.guess)
@@ -274,14 +276,14 @@ class Corrector:
         found.numbers[i] = p, sweeps, residual, sign, size
 
     def search(self, way: Way, found: Found, aim: Aim) -> int:
-        """The solution at which a number passes zero between a chord's ends, the first one of what is found.
+        """Find the zero of an aim's test function between a chord's ends, and write its point to the first entry of `found`.
 
-        ``known`` has tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`; the final bracket is left there.
+        ``known`` gives tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`, and receives the final bracket.
 
         Returns
         -------
         int
-            `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
+            `PASSED` if a zero was bracketed, `AT_END` if an end is taken as the zero, `NOWHERE` if there is none.
         """
         known = self.known
 
@@ -298,7 +300,7 @@ class Corrector:
             return NOWHERE
         smallest, largest = sorted((abs(first), abs(last)))
         if first * last > 0.0:
-            # an end that is the zero itself may have either sign, by roundoff
+            # an end that is itself the zero may have either sign, by rounding
             if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
                 return NOWHERE
             outcome, seen, end = AT_END, 1.0, 0.0 if abs(first) < abs(last) else 1.0
@@ -307,6 +309,6 @@ class Corrector:
             bracket = Bracket(1.0, last, last_p, 0.0, first, first_p, *known[[PRECISION, JUMP]].tolist())
             seen, outcome, end = bracket.narrow(value), PASSED, bracket.best
             known[ENDS] = bracket.x1, bracket.f1, bracket.p1, bracket.x2, bracket.f2, bracket.p2
-        if end != seen or found.numbers[0, 1] < 0.0:  # the best place once more
+        if end != seen or found.numbers[0, 1] < 0.0:  # evaluate the best position again
             value(end)
         return outcome

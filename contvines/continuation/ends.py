@@ -1,4 +1,4 @@
-"""Where a branch ends by itself: it comes back to its start, runs away, or creeps."""
+"""Ends of a branch that lie in its solutions: it returns to its start, its unknowns grow without bound, or its steps creep."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from .engine import Engine, Solved
 from .layout import Chunk, Status, packed
 from .settings import SOLUTION
 
-NEAR = 1.5  # distances of neighbours from the start at which a branch may close
+NEAR = 1.5  # a branch may close between two points if one is nearer to the start than this many of their distance
 
 
 class Closing:
-    """Recognises that a branch comes back to its start, modulo the shift by a period."""
+    """Detects that a branch returns to its start, modulo the shift by a period."""
 
     def __init__(self, engine: Engine, start: Solved) -> None:
         self.engine, self.start = engine, start
         self.left = False  # whether a chunk has gone away from the start
 
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
-        """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
+        """Return the chunk up to the start, or None if it does not reach it; `apart` bounds the distance of neighbouring points."""
         engine = self.engine
         if engine.adaptive is not None:
             return self._on_other_meshes(chunk)
@@ -27,7 +27,7 @@ class Closing:
             changes = chunk.values[1:] - chunk.values[:-1]
             rises = chunk.values[-1] > self.start.p
             if (changes > 0.0 if rises else changes < 0.0).all():
-                return None  # from the start on the parameter only rises, or only falls
+                return None  # the parameter changes in one direction only
         far = NEAR * apart * (engine.upper - engine.lower)
         if self.start.p < chunk.values.min() - far or self.start.p > chunk.values.max() + far:
             return None
@@ -61,7 +61,7 @@ class Closing:
         return None
 
     def _on_other_meshes(self, chunk: Chunk) -> Chunk | None:
-        """The same where unknowns belong to meshes, and solutions may be shifted in time: their canonical forms tell which is which."""
+        """Return the same for unknowns that belong to meshes, and may be shifted in time: solutions are compared by their canonical forms."""
         engine, start, problem = self.engine, self.start, self.engine.problem
         ahead = np.sign(start.tangent[-1])
         gaps = (chunk.values - start.p) * ahead
@@ -79,31 +79,31 @@ class Closing:
                 size = engine.scale[: len(here)] if len(here) < len(engine.scale) else 1.0
                 if (np.abs(here - there) <= engine.settings.one_place * (size + np.abs(there))).all():
                     points = chunk.cut(int(i) + 1)
-                    # not the start itself: there the same motion may begin at another time, or lie on another mesh
+                    # end with the point found, not with the start: the start may be shifted in time, or lie on another mesh
                     way = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0
                     found = found._replace(tangent=way * found.tangent, sign=way * found.sign)
                     return points.joined(packed([found], Status.CLOSED))
         return None
 
 
-# doublings of the distance, to `SOLUTION.huge`, for which the rest of the interval has to have room, on branches that go on
+# a branch escapes only if this many doublings of its distance, as fast as the last one, fit into the rest of the interval
 DOUBLINGS = 26
-# a doubling that takes so much less than the one before, and so little of the interval, is one of the last
+# or if the parameter's change during a doubling is less than SHRINKS of that before, and than SMALL of the interval
 SHRINKS, SMALL = 0.5, 0.05
-STEADY = 0.05  # relative difference of two shares by which the parameter's change shrinks with a doubling, up to which they are one
-MANY = 600  # short steps in a row that lead nowhere
-OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
-GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
+STEADY = 0.05  # the parameter's change shrinks steadily if its ratio from doubling to doubling varies by less than this part
+MANY = 600  # number of short steps in a row after which a branch creeps
+OFF = 2.0  # limit of the distance, in units of `escape`, for families of cycles at one parameter value, as of a linear oscillator
+GROW = 2.0  # distance from the start, in typical sizes, from which the longest step grows with the distance
 
 
 class Reach:
-    """How far a branch is from its start, whether it runs away, and how long its steps may be there.
+    """Distance of a branch from its start: detects that the branch runs away, and bounds the length of steps.
 
-    Where typical sizes of the unknowns are known (they were given, or are 1) a branch has run away when it is further from its start
-    than so many of them. Where points are dear steps may grow with the distance. Sizes that were learned near the start say little of what lies far
-    from it: there a branch has run away when its distance doubles within changes of the parameter that shrink by the same share, as towards a pole in
-    the interval, and are so small that it would be out of all bounds long before the end. Powers of the parameter double within ever larger ones and
-    are followed.
+    * If typical sizes of the unknowns are given (or 1), a branch has run away if its distance from the start exceeds `Settings.escape` of them.
+    * Sizes learned near the start say little about solutions far from it. A branch then has run away if its distance doubles within changes of the
+      parameter that shrink by a constant ratio, as towards a pole inside the interval, and are so small that the distance would become huge long
+      before the end of the interval. Powers of the parameter double within growing changes, and are followed.
+    * For problems in Python, whose points are expensive, the longest step grows with the distance.
 
     Parameters
     ----------
@@ -114,24 +114,24 @@ class Reach:
     def __init__(self, engine: Engine, start: Solved) -> None:
         self.engine, self.start = engine, start
         self.learned = engine.problem.scales_learned
-        # cycles explode within next to no change of the parameter (canards) and stay bounded; their periods have a margin
+        # cycles may grow within a tiny change of the parameter (canards) and stay bounded; long periods are detected by a margin
         self.bounded = engine.adaptive is not None
-        # largest distances so far, each twice the one before, and the extremes of the parameter since
+        # distance that counts as the next doubling, and the extremes of the parameter since the last one
         self.doubled = engine.settings.escape
-        self.slow = 0  # points in a row that came next to nowhere
+        self.slow = 0  # number of short steps in a row
         self.low = self.high = start.p
-        # change of the parameter while the distance doubled last: infinite where it turned back, as it stands still at a fold
+        # change of the parameter during the last doubling; infinite if it turned back, as it is stationary at a fold
         self.moved, self.turned = np.inf, False
-        self.share = np.nan  # of that change in the one before
+        self.share = np.nan  # ratio of this change to the one before
 
     def growth(self, point: Solved) -> float:
-        """Factor of the longest step at a point; 1 where points are cheap."""
+        """Return the factor by which the longest step grows at a point; 1 for compiled problems."""
         if self.engine.compiled:
             return 1.0
         return max(1.0, float(self._distances(point.u[None, :])[0]) / GROW)
 
     def escapes(self, chunk: Chunk, apart: float = np.inf) -> int | None:
-        """Index of the first point at which the branch has run away, or None; neighbours are at most so far apart."""
+        """Return the index of the first point at which the branch has run away, or None; `apart` bounds the distance of neighbouring points."""
         escape = self.engine.settings.escape
         if not self.learned:
             scale = self.engine.scale[:-1]
@@ -158,14 +158,14 @@ class Reach:
             moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
             room = self.engine.upper - value if ahead else value - self.engine.lower
             last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
-            # where the parameter stands still its turns are those of rounding
+            # if the parameter does not change, its turns are rounding
             stands = (
                 moved <= max(self.engine.settings.rounding, 10.0 * self.engine.noise) * self.engine.scale[-1]
             )
             turned = self.turned and not stands
             comparable = self.moved < np.inf and not turned
             share = moved / self.moved if comparable and self.moved > 0.0 else np.nan
-            # near the start distances double within less and less however the branch goes on; by the same share towards a pole, here one in the interval
+            # near the start changes shrink on every branch; by a constant ratio only towards a pole, which here must lie in the interval
             pole = abs(share - self.share) <= STEADY * share and moved * share < (1.0 - share) * room
             soon = DOUBLINGS * moved < room and (pole or stands)
             bound = not self.bounded and comparable and moved <= self.moved and (last or soon)
@@ -177,13 +177,13 @@ class Reach:
         return None
 
     def _one_of_a_family(self, row: np.ndarray) -> bool:
-        """Whether a multiplier is 1, as of cycles that all exist at one value of the parameter; those of a canard explosion are far from it."""
+        """Whether a multiplier is 1, as for a family of cycles at one parameter value; in a canard explosion it is far from 1."""
         return bool(
             np.abs(self.engine.spectrum(row) - 1.0).min(initial=np.inf) < self.engine.settings.together
         )
 
     def creeps(self, chunk: Chunk) -> bool:
-        """Whether many points have come next to nowhere; of problems whose points are dear."""
+        """Whether many steps in a row were very short; False for compiled problems, whose points are cheap."""
         if self.engine.compiled or len(chunk) < 2:
             return False
         steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
@@ -192,17 +192,17 @@ class Reach:
         return self.slow >= MANY
 
     def _distances(self, points: np.ndarray) -> np.ndarray:
-        """Root mean square distances from the start, in typical sizes."""
+        """Return the root mean square distances from the start, in typical sizes, shape (n,)."""
         return np.sqrt((((points - self.start.u) / self.engine.scale[:-1]) ** 2).mean(axis=1))
 
 
 def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -> np.ndarray:
-    """Which points are further than `escape` times the scale from u (root mean square)."""
+    """Return which points are farther than `escape` times the scale from u (root mean square), shape (n,)."""
     if not (scale == 1.0).all():
         points, u = points / scale, u / scale
     limit = escape * escape * len(u)
     squares = np.einsum("ij,ij->i", points, points)
-    # nothing as large as the points is made, unless unknowns are so large that their squares cancel
+    # saves an array as large as the points, unless unknowns are so large that the difference of squares loses its digits
     if SOLUTION.cancels * (squares.max() + u @ u) < limit:
         return squares - 2.0 * (points @ u) + u @ u > limit
     return ~(((points - u) ** 2).sum(axis=1) <= limit)

@@ -1,4 +1,4 @@
-"""Engine: a problem with its loop, work arrays and metric; solves single points tightly."""
+"""Engine: a problem with its continuation loop, work arrays and metric; solves single points to rounding."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ if TYPE_CHECKING:
     from .native import NativeLoop
 
 
-NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
-ONE = np.zeros(1)  # a single place: the chord's first end
+NOISY = 30.0  # least tolerance of Newton corrections, in units of the noise of the equations
+ONE = np.zeros(1)  # positions of a single point: the chord's first end
 NO_AIM = Aim(NOTHING, NO_COLUMNS)
 
 
 def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) -> float:
-    """Length of the parameter near p: the interval's, but an interval of silly width does not make neighbours the same."""
-    size, length = -p if p < 0.0 else p, within[1] - within[0]  # asked for often: no calls
+    """Return the unit of parameter differences near p: the larger one of |p| and `scale`, but at most the length of the interval."""
+    size, length = -p if p < 0.0 else p, within[1] - within[0]  # called often: no function calls inside
     own = size if size > scale else scale
     return own if own < length else length
 
 
 def _of_rows(extreme: np.ufunc, rows: np.ndarray) -> np.ndarray:
-    """The smallest or largest of each row; of few columns a column at a time, which takes a tenth of a reduction's time."""
+    """Return the smallest or largest entry of each row; for few columns column by column, which takes a tenth of the time."""
     if rows.ndim == 1 or rows.shape[-1] > 16:
         return np.asarray(extreme.reduce(rows, axis=-1))
     found = rows[..., 0].copy()
@@ -88,15 +88,15 @@ class Engine:
         self.detection = problem.detection or problem.spectrum
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem.scale_within(self.within), float(problem.noise)
-        self.plain = bool((self.scale[:-1] == 1.0).all())  # unknowns have no scales of their own
+        self.plain = bool((self.scale[:-1] == 1.0).all())  # whether all unknowns have scale 1
         shift = np.asarray(0.0 if problem.period_shift is None else problem.period_shift, dtype=float)
-        self.shift = shift if shift.any() else None  # what a period adds to the unknowns, if anything
+        self.shift = shift if shift.any() else None  # change of the unknowns by a period; None if zero
         scales = problem.scales
         self.rate = (
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
-        )  # of one raw eigenvalue
+        )  # unit of raw eigenvalues
         self.row_sizes = np.ones(n) if scales is None else scales.rows
-        # what the rows of multipliers tell: of problems with many unknowns eigenvalues only where they are asked for
+        # contents of rows: with many unknowns (`many`) eigenvalues are computed only where needed; `signed`: the determinant's sign is known
         self.scaled = scales is not None
         self.exchanges = self.scaled and self.detection != "none"
         nearing = problem if isinstance(problem, Nearing) else None
@@ -111,9 +111,7 @@ class Engine:
             settings.angle,
             settings.min_step,
             settings.max_step,
-            max(
-                settings.tolerance, NOISY * self.noise
-            ),  # below what the noise of the equations allows is none
+            max(settings.tolerance, NOISY * self.noise),  # not below the noise of the equations
             self.lower,
             self.upper,
             0,
@@ -122,14 +120,14 @@ class Engine:
             self.noise,
         )
         self._rows = np.zeros((0, self.row_size))
-        self.guess = np.zeros((4, n + 1))  # a chord of which the first end alone is used
+        self.guess = np.zeros((4, n + 1))  # data of a chord of which only the first end is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(SIZE)
         self.loop = self.loop_with(self.metric)
 
     def loop_with(self, metric: Metric) -> InterpretedLoop | NativeLoop:
-        """March and single points, in the native core for compiled problems where there is one."""
+        """Return the loop for march and single points: in the native core for compiled problems, if it is used, else in Python."""
         kernels, rest = self.kernels, (metric, self.noise, self.known, self.scratch, self.settings.step_rule)
         if self.compiled and isinstance(kernels, TableKernels):
             from .native import NativeLoop
@@ -140,97 +138,97 @@ class Engine:
         return InterpretedLoop(kernels, self.data, self.work, *rest)
 
     def parameter_unit(self, p: float) -> float:
-        """What differences of the parameter near p are compared with."""
+        """Return the unit of parameter differences near p; see :func:`parameter_unit`."""
         return parameter_unit(self.within, p, float(self.scale[-1]))
 
     def upright(self, p: float) -> float:
-        """The parameter's part of a unit tangent below which the branch stands upright."""
+        """Return the parameter's component of a unit tangent below which the branch is upright."""
         return self.settings.upright * self.parameter_unit(p)
 
     def settled(self, p: float) -> float:
-        """Changes of the parameter near p that are rounding, or the noise of the equations."""
+        """Return the largest change of the parameter near p that is rounding, or noise of the equations."""
         return max(self.settings.rounding, 10.0 * self.noise) * self.parameter_unit(p)
 
     def size(self, u: np.ndarray) -> float:
-        """1 + the largest unknown, in units of the scale."""
+        """Return 1 + the largest unknown in units of its scale."""
         return 1.0 + float((np.abs(u) / self.scale[:-1]).max())
 
     # ------------------------------------------------------------------ metric
     def inner(self, a: np.ndarray, b: np.ndarray) -> float:
-        """<a, b>."""
+        """Return the inner product <a, b> in the metric."""
         return float((self.weights * a).dot(b))
 
     def norm(self, a: np.ndarray) -> float:
-        """Length of a vector."""
+        """Return the length of a vector in the metric."""
         return math.sqrt((self.weights * a).dot(a))
 
     def distance(self, a: Solved, b: Solved) -> float:
-        """Length of the way from one point to another."""
+        """Return the distance of two points in the metric."""
         return self.norm(self.join(b.u - a.u, b.p - a.p))
 
     def amplitude(self, a: np.ndarray) -> float:
-        """Length of a unit vector as normal forms measure it."""
+        """Return the length of a vector in the norm of normal forms."""
         return self.problem.amplitude(a)
 
     def unit(self, a: np.ndarray) -> np.ndarray:
-        """The vector scaled to length 1."""
+        """Return the vector scaled to length 1 in the metric."""
         return a / self.norm(a)
 
     @staticmethod
     def join(u: np.ndarray, p: float) -> np.ndarray:
-        """(u, p) as one vector."""
+        """Return (u, p) as one vector, shape (N + 1,)."""
         z = np.empty(len(u) + 1)
         z[:-1], z[-1] = u, p
         return z
 
     def across(self, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
-        """The solution across a direction through a guess."""
+        """Solve for the solution in the plane through a guess that is orthogonal to a direction; None without convergence."""
         border = self.weights * tangent
         return self.solve(u, p, border, float(border @ self.join(u, p)), tangent)
 
     def beside(self, point: Solved, step: float) -> Solved | None:
-        """The solution at a distance along the tangent of a known one."""
+        """Solve for the solution at a distance along the tangent of a known one; None without convergence."""
         guess = self.join(point.u, point.p) + step * point.tangent
         return self.across(guess[:-1], float(guess[-1]), point.tangent)
 
     # ------------------------------------------------------------------ rows: multipliers as (re, im) pairs, then margins
     def rows(self, count: int) -> np.ndarray:
-        """Room for rows, the same one every time: large, written once and read once."""
+        """Return an array for rows; the same memory at every call."""
         if len(self._rows) < count:
             self._rows = np.zeros((count, self.row_size))
         return self._rows[:count]
 
     def spectrum(self, rows: np.ndarray) -> NDArray[np.complex128]:
-        """Raw multipliers of some rows, shape (..., m)."""
+        """Return the raw multipliers of some rows, shape (..., m)."""
         pairs = np.ascontiguousarray(rows[..., : 2 * self.m])
         return pairs.view(np.complex128) + 0.0  # a copy, without negative zeros
 
     def margins(self, rows: np.ndarray) -> np.ndarray:
-        """Margins of some rows, shape (..., n_margins); NaN counts as not applicable."""
+        """Return the margins of some rows, shape (..., n_margins); NaN (not applicable) becomes inf."""
         return np.fmin(rows[..., 2 * self.m :], np.inf)
 
     def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
-        """Smallest margin of each row, +inf where there are none."""
-        margins = rows[..., 2 * self.m :]  # fmin passes over NaN
+        """Return the smallest margin of each row, +inf without margins."""
+        margins = rows[..., 2 * self.m :]  # fmin ignores NaN
         if margins.ndim == 1 or not margins.shape[-1]:
             return np.fmin.reduce(margins, axis=-1, initial=np.inf)
         return np.fmin(_of_rows(np.fmin, margins), np.inf)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period, shape (..., m)."""
+        """Return the multipliers of the full period of some rows, shape (..., m)."""
         return np.asarray(self.problem.to_multipliers(self.spectrum(rows)), dtype=complex)
 
     @property
     def tells_stability(self) -> bool:
-        """Whether the problem has a spectrum that tells stability; else it is not computed."""
+        """Whether the problem has a spectrum that decides stability; else stability is not computed."""
         return self.problem.spectrum in ("map", "flow")
 
     def stable(self, rows: np.ndarray) -> np.ndarray:
-        """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows); False where nothing says."""
+        """Return whether all multipliers are inside the unit circle (left of the imaginary axis for flows); False if unknown."""
         return self.outermost(rows) < 0.0
 
     def outermost(self, rows: np.ndarray) -> np.ndarray:
-        """How far the outermost multiplier is outside the unit circle (right of the imaginary axis for flows); NaN where nothing says."""
+        """Return by how much the outermost multiplier is outside the unit circle (right of the imaginary axis for flows); NaN if unknown."""
         if not self.tells_stability:
             return np.full(rows.shape[:-1], np.nan)
         if not self.m:
@@ -250,7 +248,7 @@ class Engine:
         along: np.ndarray | None = None,
         sweeps: int = 40,
     ) -> Solved | None:
-        """The solution with border.(u, p) = target near a guess, to roundoff; None if Newton does not converge.
+        """Solve for the solution with border.(u, p) = target near a guess, to rounding; None if Newton's method does not converge.
 
         Parameters
         ----------
@@ -260,9 +258,9 @@ class Engine:
             Row that makes the system square, metric included.
         target : float
         along : ndarray, optional
-            The tangent is returned with <along, tangent> > 0; else with <border, tangent> > 0.
+            The tangent is returned with <along, tangent> > 0; by default with <border, tangent> > 0.
         sweeps : int
-            Corrections at most.
+            Largest number of corrections.
         """
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
         along = self.nothing if along is None else along
@@ -271,15 +269,15 @@ class Engine:
     def polish(
         self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
     ) -> Solved | None:
-        """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
+        """Linearise at a point without correcting it; return it with residual, tangent, spectrum and margins."""
         return self.solve(u, p, border, target, along, 0)
 
     def on_chord(self, way: Way, places: np.ndarray) -> Found:
-        """The points of a branch at places along a chord."""
+        """Solve for the points of a branch at positions along a chord."""
         return self._run(way, places)[0]
 
     def search(self, way: Way, aim: Aim, tolerance: float, jump: float) -> Hit | None:
-        """The point of a branch along a chord at which a number passes zero; None if there is none.
+        """Locate the zero of an aim's test function along a chord; None if there is none.
 
         Parameters
         ----------
@@ -302,17 +300,22 @@ class Engine:
         return Hit(place, point, max(width, SOLUTION.left * point.correction), abs(f_one - f_other))
 
     def _run(self, way: Way, places: np.ndarray, aim: Aim = NO_AIM) -> tuple[Found, int]:
+        """Run the loop for single points; return the points, and the outcome of an aim."""
         k, n = len(places), self.n
         found = Found(np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5)))
         with self.section:
             return found, self.loop.points(way, places, found, aim)
 
     def at_value(self, u: np.ndarray, p: float, along: np.ndarray | None = None) -> Solved | None:
-        """The solution at a fixed parameter value, or None."""
+        """Solve for the solution at a fixed parameter value; None without convergence."""
         return self.solve(u, p, self.at_parameter, p, along)
 
     def start(self, u: np.ndarray, p: float, tangent: np.ndarray | None = None) -> Solved | None:
-        """A first point near (u, p): at fixed p within the interval, or, where that fails or leads away (at a fold), nearest to the guess."""
+        """Solve for a first point near (u, p), inside the interval; None if there is none.
+
+        With a tangent the point lies in the plane orthogonal to it. Else it is sought at fixed p; if that fails or leads far away, as near a fold, also
+        at a fixed unknown, and the nearest of the points found is returned.
+        """
         u = np.asarray(u, dtype=float)
         if tangent is not None and np.any(tangent):
             tangent = self.unit(np.asarray(tangent, dtype=float))
@@ -336,19 +339,19 @@ class Engine:
         return min(inside, key=lambda other: self._off(u, p, other), default=None)
 
     def _near(self, u: np.ndarray, found: Solved) -> bool:
-        """Whether a solution is as near to a guess as one that has the guess's parameter may be where the guess is a solution, too.
+        """Whether a solution at the guess's parameter is so near to the guess that it may be the same solution.
 
-        Beside a fold that is the square root of a residual.
+        Near a fold the distance may be as large as the square root of the residual.
         """
         return self._off(u, found.p, found) <= math.sqrt(SOLUTION.solved)
 
-    @np.errstate(all="ignore")  # what Newton's method has run away to may be larger than all numbers
+    @np.errstate(all="ignore")  # a solution far away may cause overflow
     def _off(self, u: np.ndarray, p: float, found: Solved) -> float:
-        """Length of the way from a guess to a solution."""
+        """Return the distance of a solution from a guess."""
         return self.norm(self.join(found.u - u, found.p - p))
 
     def residual(self, u: np.ndarray, p: float) -> float:
-        """Largest absolute residual; linearises."""
+        """Linearise at (u, p) in the work arrays, and return the largest absolute residual."""
         with np.errstate(all="ignore"):
             return float(self.kernels.linearise(self.data, np.array(u, dtype=float), float(p), self.work))
 

@@ -1,6 +1,8 @@
-"""What the loop of a continuation reads and writes: points, one by one and in chunks, and the numbers of them that pass zero at special points.
+"""Data of the continuation loop: points, single and in chunks, and the test functions ("aims") that are zero at special points.
 
 The arrays, and the functions of aims, are the same in Python and in the native core (native/march.hpp).
+
+The "row" of a point has its multipliers as (re, im) pairs, then its margins.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Status(IntEnum):
-    """Status codes of the continuation loop; ``sentence`` says what they mean."""
+    """Status codes of the continuation loop; ``sentence`` explains them."""
 
     RUNNING = 0
     LEFT_INTERVAL = 1
@@ -35,7 +37,7 @@ class Status(IntEnum):
     COARSE = 9
 
     def sentence(self, parameter: str = "p", value: float = float("nan"), unit: float = 1.0) -> str:
-        """The status as a sentence about a branch at this parameter value; beside ``unit`` rounding is zero."""
+        """Return the status as a sentence on a branch that stopped at this parameter value; ``unit`` is the typical size of the parameter."""
         long, short = number_text(value, 10, unit), number_text(value, 6, unit)
         return {
             Status.RUNNING: "unfinished",
@@ -51,18 +53,34 @@ class Status(IntEnum):
         }[self]
 
 
-# margins below this are negative; above it they are zero to rounding, at a border or all along a branch
+# a margin below this is negative; between this and zero it is zero to rounding, at a border or all along a branch
 MARGIN = -SOLUTION.rounding
 
-# what it finds when it looks for something
+# outcomes of a search for the zero of an aim: none; bracketed; an end is taken as the zero
 NOWHERE, PASSED, AT_END = 0, 1, 2
 
-# where numbers of a bracket stand in the memory of a loop: its last end first, x, f and the parameter of either; the tolerance and jump of a search
+# positions in the array of a search's bracket, of length SIZE: x, f and parameter of both ends, the last point first; tolerance; jump
 ENDS, PRECISION, JUMP, SIZE = slice(6), 9, 10, 26
 
 
 class Control(NamedTuple):
-    """Settings of the march."""
+    """Settings of the march.
+
+    Attributes
+    ----------
+    angle, min_step, max_step, tolerance : float
+        See :class:`contvines.continuation.settings.Settings`.
+    lower, upper : float
+        Parameter interval.
+    stop_at_border : float
+        Not 0 to stop at the first point with a negative margin.
+    sweeps : int
+        Largest number of Newton corrections per point.
+    row_margins : int
+        Position of the first margin in a row.
+    noise : float
+        Noise of the equations.
+    """
 
     angle: float
     min_step: float
@@ -77,11 +95,20 @@ class Control(NamedTuple):
 
 
 class Way(NamedTuple):
-    """Where single points are looked for.
+    """A chord along which single points are solved for, or a single guess.
 
-    ``chord``, shape (4, N + 1), is one of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its
-    tangent likewise. At a place s border.(u, p) is to be ``start`` + s ``length``; with length 0 the first end is a guess, and no more. Tangents are
-    returned with <along, tangent> >= 0. Newton's method takes at most ``sweeps`` (none at the chord's ends: they are good as they are).
+    Attributes
+    ----------
+    chord : ndarray, shape (4, N + 1)
+        Data of cubic Hermite interpolation: first end, its tangent times the arc's length, second end, its tangent times the arc's length.
+    start, length : float
+        The point at position s has border.(u, p) = start + s length. With length 0 the first end is a guess, and the rest of the chord is not used.
+    border : ndarray, shape (N + 1,)
+        Row that makes the system square.
+    along : ndarray, shape (N + 1,)
+        Tangents are returned with <along, tangent> >= 0.
+    sweeps : int
+        Largest number of Newton corrections; the ends of a chord are not corrected.
     """
 
     chord: np.ndarray
@@ -93,10 +120,16 @@ class Way(NamedTuple):
 
 
 class Metric(NamedTuple):
-    """How lengths are measured: <a, b> = sum of weights_j a_j b_j over unknowns and parameter.
+    """Metric of lengths and angles: <a, b> = sum of weights_j a_j b_j over unknowns and parameter.
 
-    ``weights`` and ``scale`` (typical sizes) have shape (N + 1,); ``of_unknowns`` and ``of_parameter`` are the weights of
-    unknowns whose scale is 1, and of the parameter. ``moving`` is the problem, if its unknowns belong to a mesh that moves along.
+    Attributes
+    ----------
+    weights, scale : ndarray, shape (N + 1,)
+        Weights, and typical sizes.
+    of_unknowns, of_parameter : float
+        Weight of an unknown with scale 1, and of the parameter.
+    moving : Moving or None
+        The problem, if its unknowns belong to a mesh that moves with the solution.
     """
 
     weights: np.ndarray
@@ -107,7 +140,7 @@ class Metric(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Work space of the loop: unknowns (N,), then a row of the bordered system, its solutions and a guess (N + 1,)."""
+    """Work arrays of the loop: unknowns, shape (N,); then the border of the bordered system, its two solutions, and a guess, shape (N + 1,)."""
 
     u: np.ndarray
     border: np.ndarray
@@ -117,9 +150,9 @@ class Scratch(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What is found of k points: shapes (k, N), (k, N + 1), (k, row), (k, 5).
+    """Results for k points: arrays of shapes (k, N), (k, N + 1), (k, row), (k, 5).
 
-    ``numbers`` are p; the number of sweeps (-1: no convergence; -2: not evaluable; -3: the tangent is not finite; -4: the point
+    The columns of ``numbers`` are p; the number of sweeps (-1: no convergence; -2: not evaluable; -3: the tangent is not finite; -4: the point
     belongs to another branch); the residual; the sign of the bordered determinant for the tangent; the size of the last correction.
     """
 
@@ -130,10 +163,24 @@ class Found(NamedTuple):
 
 
 class Solved(NamedTuple):
-    """A point of a branch with everything known about it.
+    """A solved point of a branch.
 
-    ``row`` is what the kernel ``inspect`` wrote: multipliers as re, im pairs, then margins. ``tangent`` is a unit vector
-    in the metric, ``sign`` the sign of det [[F_u, F_p], [tangent]], ``correction`` the last Newton correction.
+    Attributes
+    ----------
+    u : ndarray, shape (N,)
+        Unknowns.
+    p : float
+        Parameter value.
+    tangent : ndarray, shape (N + 1,)
+        Unit vector in the metric.
+    row : ndarray
+        Result of the kernel ``inspect``: multipliers as (re, im) pairs, then margins.
+    sign : float
+        Sign of det [[F_u, F_p], [tangent]]; 0 if unknown.
+    residual : float
+        Largest absolute residual.
+    correction : float
+        Size of the last Newton correction, relative to scale + abs(unknown).
     """
 
     u: np.ndarray
@@ -146,7 +193,19 @@ class Solved(NamedTuple):
 
 
 class Hit(NamedTuple):
-    """Where a number passes zero along a chord: the place, the point (None if it is not found again), the error of its parameter value, how much the number changes there."""
+    """A zero of an aim along a chord.
+
+    Attributes
+    ----------
+    place : float
+        Position on the chord.
+    point : Solved or None
+        The point; None if it could not be solved again.
+    error : float
+        Error of its parameter value.
+    jump : float
+        Change of the test function over the final bracket.
+    """
 
     place: float
     point: Solved | None
@@ -155,12 +214,12 @@ class Hit(NamedTuple):
 
 
 def solved_points(found: Found) -> list[Solved | None]:
-    """Points one by one, None where there is no solution."""
+    """Return the points as a list, None for each without a solution."""
     return [solved_point(found, i) for i in range(len(found.u))]
 
 
 def solved_point(found: Found, i: int) -> Solved | None:
-    """One of the points, None where there is no solution."""
+    """Return point i, None without a solution."""
     p, sweeps, residual, sign, size = found.numbers[i].tolist()
     if not sweeps >= 0:
         return None
@@ -170,15 +229,23 @@ def solved_point(found: Found, i: int) -> Solved | None:
 OF_SOLVED = {
     "points": "u", "values": "p", "tangents": "tangent", "rows": "row", "signs": "sign", "corrections": "correction",
 }  # fmt: skip
-"""The arrays of a chunk, and what they have of solved points."""
+"""Arrays of a chunk -> the fields of solved points that they contain."""
 
 
 @dataclass
 class Chunk:
-    """Consecutive points of a branch; the first one is the last point of the chunk before.
+    """Consecutive points of a branch; the first one is the last point of the previous chunk.
 
-    The loop writes the rows of the next chunk to the same place: copy what is needed later. ``before`` is the point before the
-    first one, where there is one. Shapes of the arrays of M points: (M, N), (M,), (M, N + 1), (M, row), (M,), (M,).
+    The loop writes the rows of the next chunk to the same memory: copy those that are needed later.
+
+    Attributes
+    ----------
+    points, values, tangents, rows, signs, corrections : ndarray
+        Of shapes (M, N), (M,), (M, N + 1), (M, row), (M,), (M,) for M points; see `Solved`.
+    status : Status
+        RUNNING, or the reason why the branch ends with the last point.
+    before : Solved or None
+        The point before the first one, if there is one.
     """
 
     points: np.ndarray
@@ -195,23 +262,23 @@ class Chunk:
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
-        """All that is known of the points."""
+        """The arrays in the order of the attributes."""
         return self.points, self.values, self.tangents, self.rows, self.signs, self.corrections
 
     def cut(self, n: int) -> Chunk:
-        """The first n points."""
+        """Return the chunk of the first n points."""
         return Chunk(*(array[:n] for array in self.arrays), status=self.status, before=self.before)
 
     def joined(self, other: Chunk) -> Chunk:
-        """These points and those of another chunk, with its status."""
+        """Return the chunk of these points followed by those of another chunk, with its status."""
         return Chunk(*map(np.concatenate, zip(self.arrays, other.arrays, strict=True)), status=other.status)
 
     def widened(self) -> Chunk:
-        """The chunk with the point before its first one, where there is one."""
+        """Return the chunk with the point before its first one, if there is one."""
         return self if self.before is None else packed([self.before], self.status).joined(self)
 
     def solved(self, i: int, sign: float | None = None) -> Solved:
-        """Point i; with another sign where that is known better."""
+        """Return point i, with another sign of the determinant if given."""
         return Solved(
             self.points[i],
             float(self.values[i]),
@@ -224,33 +291,41 @@ class Chunk:
 
 
 def packed(points: Sequence[Solved], status: Status) -> Chunk:
-    """Some points as a chunk."""
+    """Return some points as a chunk."""
     return Chunk(
         *(np.array([getattr(point, name) for point in points]) for name in OF_SOLVED.values()), status=status
     )
 
 
-# kinds of spectra that tell
+# kinds of spectra used for detection: none; multipliers; eigenvalues; eigenvalues that show branch points only
 NONE, MAP, FLOW, REAL = 0, 1, 2, 3
 KINDS = {"none": NONE, "map": MAP, "flow": FLOW, "real": REAL}
 
-# what passes zero
+# test functions of aims
 NOTHING, MARGINS, SLOPE, SIGN, MULTIPLIER = 0, 1, 2, 3, 4
 
-# sorts of multipliers
+# sorts of multipliers: real positive, real negative, complex pairs
 PLUS, MINUS, PAIR = 1, -1, 0
 SORTS = {"plus": PLUS, "minus": MINUS, "pair": PAIR}
 
 NO_COLUMNS = np.zeros(0, np.int64)
-LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
+LIMIT = 1.0  # bound at which test functions of multipliers are clipped
 
 
 @dataclass(frozen=True, eq=False)
 class Aim:
-    """What passes zero: the smallest of some margins, the parameter's part of the tangent, the sign of the determinant, or a multiplier.
+    """A test function whose zero is sought, in the form that the native core evaluates.
 
-    ``columns`` are those of the margins in a row; ``count`` multipliers stand in front as (re, im) pairs, of a ``kind`` of spectrum, and
-    the ``rank``-th of a ``sort`` is meant. With ``anyway``, where the ends of a segment do not have opposite signs, the end with the smaller value is taken.
+    Attributes
+    ----------
+    what : int
+        MARGINS: the smallest of some margins; SLOPE: the parameter's component of the tangent; SIGN: the sign of the determinant; MULTIPLIER: a multiplier.
+    columns : ndarray of int
+        For MARGINS: their columns in a row.
+    count, kind, sort, rank : int
+        For MULTIPLIER: number of multipliers in a row, kind of spectrum, sort, and rank among those of the sort, 1 for the largest.
+    anyway : int
+        Not 0: if the ends of a segment do not have opposite signs, the end with the smaller value is taken as the zero.
     """
 
     what: int
@@ -262,17 +337,17 @@ class Aim:
     anyway: int = 0
 
     def __call__(self, point: Solved) -> float:
-        """The number at a solved point."""
+        """Return the value at a solved point."""
         return float(probe(self, point.row.tolist(), float(point.tangent[-1]), float(point.sign)))
 
 
 def aim_at_multiplier(count: int, spectrum: str, sort: str, rank: int) -> Aim:
-    """A multiplier by its rank among those of a sort, "plus", "minus" or "pair"; ``spectrum`` is what a problem calls its own."""
+    """Return the aim at a multiplier by its rank among those of a sort, "plus", "minus" or "pair"; ``spectrum`` is a key of `KINDS`."""
     return Aim(MULTIPLIER, NO_COLUMNS, count, KINDS[spectrum], SORTS[sort], rank)
 
 
 def probe(aim, row, slope, sign):
-    """The number that an aim is about at a point: its row, the parameter's part of its tangent, its sign."""
+    """Return the value of an aim's test function at a point with this row, parameter's component of the tangent, and sign of the determinant."""
     if aim.what == MARGINS:
         value = 1.0
         for j in aim.columns:
@@ -287,15 +362,15 @@ def probe(aim, row, slope, sign):
 
 
 def multiplier(row, count, kind, sort, rank):
-    """The test function of one multiplier of a sort at one point, the largest of them ranked first: positive past the circle (or the axis)."""
+    """Return the test function of one multiplier of a sort, by rank, the largest first: its logarithm (of flows its real part), positive outside."""
     members = 0
     for j in range(count):
         members += _belongs(row[2 * j + 1], kind, sort)
     if members < rank:
         if sort == PAIR or members == count:
             return -LIMIT
-        # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
-        # as it does in conservative systems
+        # too few multipliers of this sort: a complex pair may meet on the real axis. Minus the distance of the nearest complex one from the critical
+        # value is continuous if they meet exactly there, as in conservative systems
         place = 0.0 if kind != MAP else (-1.0 if sort == MINUS else 1.0)
         nearest = LIMIT
         for j in range(count):
@@ -326,7 +401,7 @@ def _belongs(im, kind, sort):
 
 
 def _size(re, im, kind, sort):
-    """What the multipliers of a sort are ranked by."""
+    """Return the number by which the multipliers of a sort are ranked."""
     if sort == PAIR:
         return math.hypot(re, im) if kind == MAP else re
     return -re if sort == MINUS and kind != REAL else re

@@ -1,6 +1,6 @@
-"""The continuation loop: predict, correct, judge the step, many points a call.
+"""The continuation loop: predict, correct, judge the step; many points in one call.
 
-For problems in Python; native/march.hpp has the same for compiled ones. Nothing is known of events here.
+This is the version for problems in Python; native/march.hpp has the same for compiled ones. Special points are not detected here.
 
 Metric: <a, b> = a_u.b_u / N + a_p b_p / (hi - lo)^2, so that step lengths
 depend neither on the number of repetitions of an orbit nor on the unit of the parameter. Unknowns of Python problems have
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class InterpretedLoop(Corrector):
-    """March and single points of one problem; overflows are nobody's business.
+    """March and single points of one problem in Python; overflows cause no warnings.
 
     Parameters
     ----------
@@ -47,7 +47,23 @@ class InterpretedLoop(Corrector):
         self.rule = rule
 
     def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
-        """The points at some places, or the one that is aimed at; see :mod:`contvines.continuation.corrector`."""
+        """Solve for the points at some positions along a chord, or for the zero of an aim.
+
+        Parameters
+        ----------
+        way : Way
+        places : ndarray, shape (k,)
+            Positions; not used with an aim.
+        found : Found
+            Filled: entry i for position i, entry 0 for the zero of an aim.
+        aim : Aim
+            Test function; with ``aim.what == NOTHING`` the points at `places` are computed.
+
+        Returns
+        -------
+        int
+            With an aim, see :meth:`contvines.continuation.corrector.Corrector.search`.
+        """
         with np.errstate(all="ignore"):
             if aim.what != NOTHING:
                 return self.search(way, found, aim)
@@ -59,10 +75,10 @@ class InterpretedLoop(Corrector):
     def march(self, chunk: Chunk, first: int, h: float, control: Control) -> tuple[int, float, int]:
         """Fill rows first, first + 1, ... of the arrays of a chunk with points of the branch.
 
-        Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
+        Row first - 1 contains the last known point, row first - 2 (if any) the one before it.
 
-        Each step is judged, and the next one chosen, by the step rule (:class:`contvines.continuation.settings.StepRule`). At the ends of the
-        interval the last point is corrected at the fixed parameter value, so it lies on the end exactly.
+        The step rule (:class:`contvines.continuation.settings.StepRule`) judges each step and chooses the length of the next one. At an end of the
+        interval the last point is corrected at the fixed parameter value, so that it lies exactly on the end.
 
         Parameters
         ----------
@@ -71,16 +87,17 @@ class InterpretedLoop(Corrector):
         first : int
             At least 1.
         h : float
-            Step to try first.
+            Length of the first step.
         control : Control
 
         Returns
         -------
         filled : int
-            Rows are filled up to, not including, this one.
+            Number of filled rows.
         h : float
-            Step to go on with.
+            Length of the next step.
         status : int
+            A :class:`contvines.continuation.layout.Status`.
         """
         metric, judge, (u, border, _, tangent, _) = self.metric, self.rule.factor, self.scratch
         points, values, tangents, rows, signs, corrections = chunk.arrays

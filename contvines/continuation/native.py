@@ -1,4 +1,4 @@
-"""The continuation loop of compiled problems, in the native core (native/march.hpp)."""
+"""Continuation loop of compiled problems, in the native core (native/march.hpp)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .settings import BY_ANGLE, SOLUTION, StepRule
 BRIEF, LONG = (
     0.01,
     0.04,
-)  # seconds: shorter calls get more points the next time, longer ones fewer; between calls an interrupt is seen
+)  # seconds: after shorter calls the next one computes more points, after longer ones fewer; interrupts are noticed between calls
 
 LIMITS = np.array(astuple(SOLUTION))
 
@@ -28,7 +28,7 @@ ABORT = -np.inf
 
 
 class Judge:
-    """A step rule of the user's own as a C function; what it raises is raised again where the march returns.
+    """A user-defined step rule as a C function; its exceptions are raised again after the march returns.
 
     Parameters
     ----------
@@ -49,26 +49,27 @@ class Judge:
             return ABORT
 
     def raise_again(self) -> None:
-        """Raise what the rule raised, if anything."""
+        """Raise the exception of the rule, if there was one."""
         error, self.error = self.error, None
         if error is not None:
             raise error
 
 
 class NativeLoop:
-    """March and single points of one problem.
+    """March and single points of one problem in the native core.
 
     Parameters
     ----------
     table : int
         Address of the problem's kernels; see `contvines.core.table`.
     data, work
-        Of the problem, with ``memory``.
+        Data and workspace of the problem, with ``memory``.
     sizes : (int, int)
         Numbers of unknowns and of entries of a row.
     metric : Metric
-        Of unknowns with scale 1.
+        Metric of unknowns with scale 1.
     noise : float
+        Noise of the equations.
     known : ndarray
         Bracket of a search; see :mod:`contvines.continuation.layout`.
     scratch : Scratch
@@ -102,10 +103,10 @@ class NativeLoop:
         )
         self.at = address(self.frame)
         self.judge = None if rule is BY_ANGLE else Judge(rule)
-        self.at_once = 4  # points of one call
+        self.at_once = 4  # number of points of one call
 
     def march(self, chunk: Chunk, first: int, h: float, control: Control) -> tuple[int, float, int]:
-        """See :meth:`contvines.continuation.loop.InterpretedLoop.march`."""
+        """Fill rows of a chunk; see :meth:`contvines.continuation.loop.InterpretedLoop.march`."""
         step, filled, status = NUMBER(h), WHOLE(first), Status.RUNNING
         arrays, size, settings = (
             [place(array) for array in chunk.arrays],
@@ -135,7 +136,7 @@ class NativeLoop:
         return filled.value, step.value, status
 
     def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
-        """The points at some places, or the one that is aimed at; see :mod:`contvines.continuation.corrector`."""
+        """Solve for the points at some positions, or for the zero of an aim; see :meth:`contvines.continuation.loop.InterpretedLoop.points`."""
         columns = np.ascontiguousarray(aim.columns, dtype=np.int64)
         aimed = pack(aim.what, len(columns), columns, aim.count, aim.kind, aim.sort, aim.rank, aim.anyway)
         return _points()(

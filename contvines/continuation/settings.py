@@ -14,30 +14,30 @@ from contvines.shared.near_names import did_you_mean
 class StepRule:
     """A rule for the length of steps along a branch.
 
-    The continuation loop asks it after every step that the corrector has brought back to the branch; a step that the corrector gives up is halved
-    without asking.
+    The continuation loop calls it after every step whose point the corrector has solved for; a step for which Newton's method fails is halved
+    without calling it.
 
     Parameters
     ----------
     judge : callable
-        ``judge(turn, error, sweeps, length, angle, roundoff) -> factor``. The next step is `factor` times as long as this one if the
-        factor is positive; a negative one, above -1, rejects this step, which is tried again ``-factor`` times as long. It gets
+        ``judge(turn, error, sweeps, length, angle, roundoff) -> factor``. A positive factor accepts the step; the next one is `factor` times as long.
+        A negative factor, above -1, rejects the step; it is tried again with ``-factor`` times its length. The arguments are
 
         ``turn``
             the angle between the tangents before and after the step, radians;
         ``error``
             the distance of the corrected point from the predicted one;
         ``sweeps``
-            how many Newton corrections that took;
+            the number of Newton corrections;
         ``length``
             the length of the step, in the metric of the run (`contvines.Settings`);
         ``angle``
             the angle to aim at, from the settings;
         ``roundoff``
-            the distance below which errors mean nothing.
+            the distance below which errors are rounding.
 
     name : str
-        What a graph's settings call it.
+        Name in the settings of a graph.
     """
 
     judge: Callable[..., float]
@@ -52,12 +52,12 @@ class StepRule:
             raise ValueError(f"step_rule: name = {self.name!r} must be a text")
 
     def factor(self, *numbers: float) -> float:
-        """What ``judge`` says of a step.
+        """Return the factor of ``judge`` for a step; arguments as for ``judge``.
 
         Raises
         ------
         ValueError
-            If it returns no such factor.
+            If it returns no valid factor.
         """
         found = self.judge(*numbers)
         try:
@@ -75,7 +75,7 @@ class StepRule:
 def by_angle(turn, error, sweeps, length, angle, roundoff):  # native/march.hpp has the same
     """Aim at an angle between neighbouring tangents (as COCO does).
 
-    An angle beyond twice of it, or a predictor error beyond the angle times the step, rejects the step.
+    A step is rejected if the angle exceeds twice this one, or the predictor's error exceeds the angle times the length.
     """
     if not (turn <= 2.0 * angle and error <= angle * length + roundoff):
         return -0.5
@@ -90,107 +90,108 @@ def by_angle(turn, error, sweeps, length, angle, roundoff):  # native/march.hpp 
 BY_ANGLE = StepRule(by_angle, "angle")
 
 
-#: settings that may be any positive number; other numbers lie between 0 and 1, whole ones are 1 at least
+#: settings that may be any positive number; other floats lie between 0 and 1, integers are at least 1
 POSITIVE = ("escape", "mesh_caution")
 
 
 @near_names.hinted
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the continuation. Lengths are in the metric in which the parameter interval has length 1 and u its rms norm.
+    """Settings of the continuation. Lengths are in the metric: the parameter interval has length 1, and u its rms norm.
 
     Attributes
     ----------
     tolerance : float
-        Steps: largest last Newton correction, relative to 1 + abs(unknown). Newton converges quadratically and a point is
-        also asked for a predicted error at roundoff, so points are much more accurate than this.
+        Steps: largest last Newton correction, relative to 1 + abs(unknown). Newton's method converges quadratically, and the
+        predicted error of a point must be rounding, so that points are much more accurate than this.
     angle : float
-        Steps: angle between neighbouring tangents to aim at, in radians; beyond twice of it a step is rejected.
+        Steps: desired angle between neighbouring tangents, in radians; a step with more than twice this angle is rejected.
     first_step, min_step, max_step : float
         Steps: lengths.
     max_iterations : int
-        Steps: Newton sweeps per point.
+        Steps: largest number of Newton corrections per point.
     max_points : int
-        Ends: points per branch and direction.
+        Ends: largest number of points per branch and direction.
     first_chunk, chunk : int
-        Steps: points that are computed, searched for special points and kept together: at first, and later.
+        Steps: number of points that are computed, searched for special points and stored together: at first, and later.
     amplitude : float
-        Switching: distance from a special point at which the branch that leaves it is first corrected.
+        Switching: first distance from a special point at which a branch that leaves it is corrected.
     crooked : float
-        Switching: how much of a new branch's deviation from a straight line may be left at half the distance from the special point: a quarter
-        on a smooth branch, seven tenths on one that begins like a root and turns round there.
+        Switching: largest part of a new branch's deviation from a straight line that may remain at half the distance from the special point.
+        It is a quarter on a smooth branch, and 0.7 on one that behaves like a square root and turns round there.
     null : float
-        Switching: relative size of a bordered system's smallest singular value below which it is singular; of several null vectors each has
+        Switching: relative size of the smallest singular value of a bordered system below which it is singular. Each further null vector has
         at least this part of the first one's growth.
     isolated : float
         Switching: the same beside a branch point, where isolated solutions are nearly singular.
     creep : float
-        Ends: steps (in the metric) shorter than this, many in a row, lead nowhere.
+        Ends: a branch creeps if many steps in a row are shorter than this.
     escape : float
-        Ends: a branch whose unknowns are further than this (rms) from its start has run away.
+        Ends: a branch has run away if its unknowns are farther than this (rms) from its start.
     max_branches, max_unknowns : int
-        Ends: the automatic diagram begins no branch when it has so many, or their points so many unknowns, sixteen bytes each.
+        Ends: an automatic diagram starts no further branch once it has this many branches, or its points this many unknowns, of sixteen bytes each.
     resolution : float
-        Special points: length of a segment that is not halved any more. Two branches with a gap narrower than this are not told
-        from a branch point; what the ends of so short a segment say and the points found between do not is *unresolved*.
+        Special points: least length of a segment that is halved. Two branches with a gap narrower than this cannot be distinguished
+        from a branch point; a segment of this length whose ends disagree with the points found on it is *unresolved*.
     halvings : int
-        Special points: how many times a segment is halved at most whose ends say more than what is found between them.
+        Special points: largest number of times that a segment is halved whose ends disagree with the points found on it.
     parts : int
-        Special points: parts of segments that are searched at most along a branch, in each direction; where they are spent, as on a branch that
-        folds without end, segments are not halved any more, and those whose ends say more than what is found are *unresolved* as they are.
+        Special points: largest number of parts of segments that are searched along a branch, in each direction. Once it is reached, as on a branch
+        with infinitely many folds, segments are not halved any more; those whose ends disagree with the points found are *unresolved*.
     upright : float
-        Special points: the parameter's part of a unit tangent, in its unit, below which the branch stands upright and has no folds.
+        Special points: the parameter's component of a unit tangent, in its unit, below which the branch is upright and has no folds.
     rounding : float
         Special points: changes of the parameter, in its unit, up to which they are rounding.
     aside : float
-        Special points: part of a segment, how far on either side of a place signs and tangents are read.
+        Special points: distance to either side of a position at which signs and tangents are evaluated, as a part of a segment.
     close : float
-        Special points: distance from a border (in the metric) of the point from which one-sided slopes and limits are taken.
+        Special points: distance from a border at which one-sided slopes and limits are computed.
     near : float
-        Special points: part of a segment below which two places on it are one; distance from a meeting (in the metric) within which tangents
-        and multipliers are those of its singular equations.
+        Special points: two positions on a segment are equal if they differ by less than this part of it. Also the distance from a meeting
+        within which tangents and multipliers are unreliable, as the equations are singular there.
     shown : float
-        Special points: margins above which a virtual branch is certainly real between two points. They are known to half their digits where a
-        doubled branch passes the border of the branch that it leaves, as one round gains what the other one loses.
+        Special points: smallest margin above which a virtual branch is certainly real between two points. Margins have only half their digits where
+        a doubled branch passes the border of the branch that it leaves, as one round gains what the other one loses.
     inside : float
-        Special points: margins of a special point above which it lies at no border.
+        Special points: a special point with a smallest margin above this does not lie at a border.
     sliver : float
-        Special points: length (in the metric) beside a point at which stability is lost, down to which a stable stretch is looked for.
+        Special points: least length of a stable stretch that is sought beside a point at which stability is lost.
     exact : float
         Special points: largest residual of a located branch point, in units of the rows; between two branches that pass each other it is larger.
     together : float
-        Special points: distance from the circle (the axis) within which multipliers count as crossing at once; double ones are known to half their digits.
+        Special points: distance from the circle (the axis) within which multipliers count as crossing at once; double ones have only half their digits.
     steep : float
-        Special points: how much of the first slope the sides of a kink must keep when they are looked at more closely.
+        Special points: part of the first slope that the sides of a kink must keep at every zoom.
     tied : float
-        Special points: margins that differ by less vanish together.
+        Special points: margins that differ by less than this vanish together.
     at_end : float
-        Special points: distance (in the metric) from the end of a branch below which a bifurcation is that end.
+        Special points: a bifurcation nearer than this to the end of a branch is that end.
     critical : float
-        Special points: distance from the circle (the axis) at which a located multiplier counts as being on it.
+        Special points: distance from the circle (the axis) within which a located multiplier counts as being on it.
     marginal : float
-        Special points: multipliers this close to the circle (the axis) do not tell stability.
+        Special points: distance from the circle (the axis) within which a multiplier does not decide stability.
     located : float
-        Special points: error, in the parameter's unit, at which points are known wherever there is one.
+        Special points: accuracy, in the parameter's unit, of all true special points.
     stationary : float
-        Special points: the parameter's part of a unit tangent, in its unit, that may be that of a fold.
+        Special points: the parameter's component of a unit tangent, in its unit, below which a point may be a fold.
     one_place : float
-        Special points: distance (in the metric) below which two are at one place, and a fold at a border is the border.
+        Special points: distance below which two points are the same, and a fold at a border is the border.
     offset : float
-        Special points: distance (in the metric) over which slopes are measured that say how errors move a point.
+        Special points: distance over which the slopes are measured that convert errors of equations to errors of a special point.
     mesh_caution : float
-        Special points: times the difference to a mesh with halved intervals, the stated error of one on a mesh.
+        Special points: safety factor on the difference to a mesh with halved intervals, from which the error of a point on a mesh is stated.
     symmetric : float
-        Identity: parts that a symmetry changes below this are zero.
+        Identity: the asymmetric part of a solution is zero if it is less than this.
     same : float
-        Identity: distance of two solutions, relative to 1 + the largest unknown, up to which they are one.
+        Identity: two solutions are the same if their distance is less than this, relative to 1 + the largest unknown.
     longest : int
-        Surveys: unknowns of a motion met by simulation above which it is not traced: it is one of many in narrow windows, and counts as simulated.
+        Surveys: largest number of unknowns of a motion found by simulation that is traced; a longer one is one of many in narrow windows, and counts
+        as simulated.
     completion : int
-        Surveys: unknowns of all points of the branches that motions met by simulation may add to a diagram (those of an integrated machine, which take
-        twenty times as long, count twenty times).
+        Surveys: largest number of unknowns in all points of branches that are added to a diagram for motions found by simulation (for integrated machines,
+        which take twenty times as long, each counts twenty times).
     step_rule : StepRule
-        Steps: whether a step is accepted, and how long the next one is; by default the rule that aims at `angle`.
+        Steps: decides whether a step is accepted, and the length of the next one; by default the rule that aims at `angle`.
     """
 
     tolerance: float = 1e-8
@@ -264,7 +265,13 @@ class Settings:
 
     @classmethod
     def of(cls, values: Settings | Mapping[str, Any] | None) -> Settings:
-        """Settings from a dict; unknown names are refused."""
+        """Return settings from a dict; None gives the default.
+
+        Raises
+        ------
+        ValueError
+            If there is no setting of a name, or a value is invalid.
+        """
         if isinstance(values, Settings):
             return values
         names = [field.name for field in fields(cls)]
@@ -278,41 +285,41 @@ class Settings:
 
     @classmethod
     def kept(cls, values: Mapping[str, Any]) -> Settings:
-        """The settings of a run, from what its graph keeps of them: the numbers; a rule of the user's own has to be given again."""
+        """Return the settings of a run from those stored in its graph; a user-defined step rule is not stored and must be given again."""
         return cls(
             **{name: values[name] for name in cls.__annotations__.keys() & values if name != "step_rule"}
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """As a JSON-able dict; of a step rule of the user's own the name."""
+        """Return the settings as a JSON-able dict; of a user-defined step rule only the name."""
         values = {name: value for name, value in vars(self).items() if name != "step_rule"}
         return values if self.step_rule is BY_ANGLE else {**values, "step_rule": self.step_rule.name}
 
 
 @dataclass(frozen=True)
 class SolutionSettings:
-    """What counts as a solution; no user's business. The native core is handed these numbers, in this order (`Solution` in native/march.hpp).
+    """Fixed tolerances of solutions. The native core receives these numbers, in this order (`Solution` in native/march.hpp).
 
     Attributes
     ----------
     rounding : float
-        Corrections of single points, predictions that miss by so little, and negative margins that are rounding.
+        Size up to which corrections of single points, errors of predictions, and negative margins are rounding.
     small : float
-        Corrections that end Newton's method however they came about, if they are within the tolerance.
+        A correction below this, and within the tolerance, ends Newton's method in any case.
     predicted : float
-        Predicted error, relative to scale + abs(unknown), at which a point counts as exact.
+        A point is exact if its predicted error, relative to scale + abs(unknown), is below this.
     stalled : float
         Corrections below this that do not shrink any more are rounding.
     solved : float
-        Residual of a solution; part of a number's value at the other end of a segment that is zero.
+        Largest residual of a solution. Also: a test function is zero at one end of a segment if it is less than this part of its value at the other end.
     huge : float
-        Larger corrections are a divergence, and a branch so many times `escape` away has run away in any case.
+        Newton's method diverges with a larger correction; a branch has run away at this many `escape` from its start in any case.
     left : float
-        Part of the last correction that may be left as an error.
+        Error of a solution, relative to its last correction.
     jump : float
-        Part of a bracket over which a function that has not come near zero jumps.
+        A function has a jump if it still changes too much over this part of the first bracket.
     told : float
-        Distance of a start from the solution that was found, in typical sizes, that is mentioned.
+        Distance between a given start and the solution found, in typical sizes, from which a message mentions it.
     cancels : float
         Part of the squares of unknowns below which their difference loses its digits.
     """
@@ -337,19 +344,17 @@ T = TypeVar("T")
 
 
 def hinting(function: Callable[P, R]) -> Callable[P, R]:
-    """The function; an argument that it does not have is refused with the names that it has.
-
-    The names of its settings are known, too: they belong into ``settings``.
-    """
+    """Wrap a function so that the error for an unknown argument lists the known ones; for a name of a setting it refers to ``settings``."""
     return near_names.hinting(function, _setting)
 
 
 def hinted(thing: type[T]) -> type[T]:
-    """The class; its public methods, and what makes it, are `hinting`."""
+    """Apply `hinting` to the public methods and the constructor of a class; return the class."""
     return near_names.hinted(thing, _setting)
 
 
 def _setting(name: str, value: object, known: Sequence[str]) -> str:
+    """Return a hint if the name of an unknown argument is that of a setting; else empty."""
     if "settings" not in known or name not in [field.name for field in fields(Settings)]:
         return ""
     return f"it is a setting: use settings={{{name!r}: {value!r}}}"

@@ -1,4 +1,4 @@
-"""Checking what a run begins with."""
+"""Checks of the start of a run: interval, problem, and the solution from which the first branch is followed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Orbit(Protocol):
-    """A solution that hands out its problem and its unknowns."""
+    """Protocol of a solution with a problem and a start."""
 
     def problem(self, parameter: str, /) -> Problem: ...
     def seed(self, problem: Problem, /) -> tuple[np.ndarray, float]: ...
@@ -32,7 +32,7 @@ class Orbit(Protocol):
 
 @runtime_checkable
 class PointOfBranch(Protocol):
-    """A special point, of a graph that has its problems, or of a locus, with the values of both parameters."""
+    """Protocol of a special point of a graph with its problem attached, or of a locus, whose `value` has both parameters."""
 
     @property
     def attached(self) -> Problem: ...
@@ -43,12 +43,12 @@ class PointOfBranch(Protocol):
 
 
 def check_interval(within: Iterable[float]) -> tuple[float, float]:
-    """The interval as two floats.
+    """Return the interval as two floats.
 
     Raises
     ------
     ValueError
-        If it is not two finite numbers, the first one smaller.
+        If it is no pair of increasing finite numbers.
     """
     try:
         lower, upper = (float(value) for value in within)
@@ -68,7 +68,24 @@ def check_interval(within: Iterable[float]) -> tuple[float, float]:
 def problem_and_start(
     seed: object, over: str | None, u: ArrayLike | None = None, p: float | None = None
 ) -> tuple[Problem, ArrayLike, float]:
-    """(problem, u, p) from an orbit object, a special point, or a problem with ``u0`` and ``p0``; u and p win where they are given."""
+    """Return (problem, u, p) for a start.
+
+    Parameters
+    ----------
+    seed : Orbit, PointOfBranch or Problem
+        An orbit, a special point, or a problem with ``u0`` and ``p0``.
+    over : str or None
+        Name of the continuation parameter; None for the problem's own.
+    u, p : optional
+        Replace the unknowns and the parameter value of the seed.
+
+    Raises
+    ------
+    TypeError
+        If the seed is no orbit, special point or complete problem.
+    ValueError
+        If there is no such parameter, the parameter is not named, or a problem has no start.
+    """
     if isinstance(seed, PointOfBranch):
         value = seed.value[0] if isinstance(seed.value, tuple) else seed.value
         u, p, seed = seed.u if u is None else u, value if p is None else p, seed.attached
@@ -104,12 +121,12 @@ def problem_and_start(
 
 
 def complete(problem: object) -> Problem:
-    """A problem that answers all that it may be asked.
+    """Check that a problem has all members of the protocol, and return it.
 
     Raises
     ------
     TypeError
-        If it does not.
+        If members are missing; the message lists them.
     """
     missing = [name for name in MEMBERS if not hasattr(problem, name)]
     if missing:
@@ -121,12 +138,12 @@ def complete(problem: object) -> Problem:
 
 
 def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
-    """The first point of a branch.
+    """Solve for the first point of a branch near (u, p).
 
     Raises
     ------
     ValueError
-        If an end of the interval is no value of the parameter, the start lies outside, or Newton's method does not converge from it.
+        If an end of the interval is no valid value of the parameter, the start lies outside, or Newton's method does not converge from it.
     """
     name = engine.problem.parameter
     try:
@@ -161,7 +178,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
 
 
 def unlike_twice(engine: Engine, u: np.ndarray, p: float) -> str:
-    """A sentence on equations that differ when they are asked twice at one place; empty if they do not, or cannot be asked."""
+    """Return a sentence if the user's equations give different residuals in two evaluations at the same point; empty if not, or not evaluable."""
     problem = engine.problem
     if engine.compiled or not isinstance(problem, Rough):
         return ""
@@ -175,20 +192,20 @@ def unlike_twice(engine: Engine, u: np.ndarray, p: float) -> str:
 
 
 def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
-    """A sentence on a start that was no solution: how large F is there, and where the branch begins instead; empty if it was one.
+    """Return sentences on a start that was no solution (residual, and where the branch begins instead), and on unknowns of unknown size; empty if none.
 
     Parameters
     ----------
     engine : Engine
     u, p
-        As given.
+        The given start.
     found : Solved
-        The solution that was taken.
+        The solution found from it.
 
     Raises
     ------
     ValueError
-        If it is further away than a branch may get (`escape`).
+        If the solution is farther from the start than `Settings.escape`.
     """
     problem = engine.problem
     if engine.compiled or not isinstance(problem, Rough):
@@ -197,12 +214,12 @@ def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
 
 
 def _name(problem: object, i: int) -> str:
-    """What an unknown is called."""
+    """Return the name of an unknown."""
     return problem.unknown_name(i) if isinstance(problem, Named) else f"u{i}"
 
 
 def _untold(problem: object, scales: Scales | None) -> str:
-    """A sentence on unknowns of which nothing tells how large they become; empty if there is none."""
+    """Return a sentence on unknowns whose typical sizes cannot be derived at the start; empty if there are none."""
     if scales is None or not scales.untold:
         return ""
     names = ", ".join(_name(problem, i) for i in scales.untold[:3]) + (
@@ -212,7 +229,7 @@ def _untold(problem: object, scales: Scales | None) -> str:
 
 
 def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
-    """A sentence on a start that was no solution; empty if it was one."""
+    """Return a sentence on a start that was no solution; empty if it was one."""
     problem = engine.problem
     assert isinstance(problem, Rough)
     u = np.asarray(u, dtype=float).reshape(-1)
@@ -224,7 +241,7 @@ def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     i = int(np.argmax(moved))
     began = found.u[i] if abs(found.u[i]) > ROUNDED * engine.scale[i] else 0.0
     place = f"{_name(problem, i)} = {began:.6g} instead of {u[i]:.6g}"
-    guessed = np.maximum(engine.scale[:-1], np.abs(u))  # a solution at zero tells no size, the guess does
+    guessed = np.maximum(engine.scale[:-1], np.abs(u))  # the guess gives the size of a solution at zero
     if not (np.abs(found.u - u) / guessed).max() <= engine.settings.escape:
         raise ValueError(
             f"the start given is no solution (the largest entry of F is {size:.2g}), and Newton's method ends far away, at "

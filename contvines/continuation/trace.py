@@ -1,4 +1,4 @@
-"""Tracing a branch: chunks of points from the loop, and ``trace``, a generator of points."""
+"""Trace a branch: `chunks` generates chunks of points from the loop, ``trace`` single points for users."""
 
 from __future__ import annotations
 
@@ -25,15 +25,19 @@ if TYPE_CHECKING:
     from .native import NativeLoop
 
 
-LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
-FEWEST = 8  # points in a chunk, however many unknowns there are
-AGAIN = 32  # points that are traced again with shorter steps
-ALONG = 0.7  # cosine of the angle between a tangent and the way to the next point on a mesh that moves along, at least
+LARGEST = (
+    2_000_000  # largest number of floats in a chunk; chunks grow up to it, or to eight times the setting
+)
+FEWEST = 8  # least number of points in a chunk, for any number of unknowns
+AGAIN = 32  # number of points that are traced again with shorter steps
+ALONG = (
+    0.7  # least cosine between a tangent and the chord to the next point if the mesh was not adapted between
+)
 
 
 @dataclass(frozen=True, eq=False)
 class Retrace:
-    """Wish to go on from the last of the first ``count`` points of a chunk, at first with steps of at most ``longest``."""
+    """Request to `chunks`: continue from the last of the first ``count`` points of a chunk, at first with steps of at most ``longest``."""
 
     count: int
     longest: float
@@ -41,7 +45,7 @@ class Retrace:
 
 @dataclass(frozen=True, eq=False)
 class Finer:
-    """Wish to go on from the beginning of a chunk with another engine; ``image`` tells how points read there."""
+    """Request to `chunks`: continue from the beginning of a chunk with the engine of a finer mesh; ``image`` transfers points to it."""
 
     engine: Engine
     image: Callable[[Solved], Solved]
@@ -57,15 +61,15 @@ def chunks(
 ) -> Generator[Chunk, Retrace | Finer | None, None]:
     """Follow the branch from a point in the direction of its tangent, a chunk at a time.
 
-    Who sees that a step of the chunk leads astray sends a :class:`Retrace`, and gets the next chunk from there; who needs another mesh
-    sends a :class:`Finer`, and gets the same part of the branch on that.
+    The caller may send a :class:`Retrace`, if a step of the chunk has jumped to another branch, and receives the next chunk from there; or a
+    :class:`Finer`, if the mesh is too coarse, and receives the same part of the branch on a finer mesh.
 
     Parameters
     ----------
     engine : Engine
     start : Solved
     journal, key
-        Each chunk is asked for, and recorded, under ``key/number``.
+        Each chunk is recalled from, and recorded in, the journal as ``key/number``.
     stop_at_border : bool
         Stop at the first point with a negative margin (which is the last one yielded).
     first_step : float, optional
@@ -74,12 +78,12 @@ def chunks(
     ------
     Chunk
         The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
-        chunks share their memory: take from them what is needed before the next one.
+        chunks share their memory: copy those that are needed before the next chunk.
     """
     settings, bound = engine.settings, engine.upper if start.tangent[-1] > 0.0 else engine.lower
     left = (bound - start.p) * np.sign(start.tangent[-1])
     if left <= engine.settled(start.p) and start.tangent[-1] != 0.0:
-        end = engine.at_value(start.u, bound, start.tangent) if left > 0.0 else None  # no step is so short
+        end = engine.at_value(start.u, bound, start.tangent) if left > 0.0 else None  # shorter than any step
         yield packed([start] if end is None else [start, end], Status.LEFT_INTERVAL)
         return
     motion = MeshMotion(engine)
@@ -93,7 +97,7 @@ def chunks(
             name, before = f"{key}/{number}", (h, copy(closing), copy(reach))
             most = min(8 * settings.chunk, LARGEST // (2 * engine.n + engine.row_size))
             if reach.learned:
-                most = min(settings.chunk, most)  # the longest step is decided anew for each
+                most = min(settings.chunk, most)  # the longest step is set for each chunk
             known = journal.recall(name) if journal is not None else None
             if known is not None:
                 chunk = Chunk(
@@ -108,7 +112,7 @@ def chunks(
                     room, longest = AGAIN, min(wish.longest, longest)
                     h = min(h, longest)
                 if not engine.compiled:
-                    # points are dear, and a branch that closes is found to only at the end of a chunk
+                    # points are expensive, and closing of a branch is tested only at the end of a chunk
                     room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
                 if engine.adaptive is not None:
                     room = min(room, engine.adaptive.chunk)
@@ -119,7 +123,7 @@ def chunks(
                 stuck = chunk.status == Status.STEP_TOO_SMALL and engine.moving is not None and not still
                 still = stuck
                 if stuck:
-                    # the direction along which the mesh moves may jump where the solutions do not: for a chunk the mesh stands still
+                    # the motion of the mesh may be discontinuous where the solutions are smooth: fix the mesh for one chunk
                     h = settings.first_step
                     if len(chunk) > 1:
                         chunk.status = Status.RUNNING
@@ -138,7 +142,7 @@ def chunks(
                     chunk.status = Status.CREEPING
                 elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                     chunk.status = Status.MAX_POINTS
-                # a step that failed at once is nothing to keep: a start that is refused leaves no journal
+                # a chunk without a step is not recorded, so that a rejected start leaves no journal
                 if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
                     journal.record(
                         name, {**_kept(chunk), "status": int(chunk.status), "h": h, "still": still}
@@ -149,7 +153,7 @@ def chunks(
             if isinstance(wish, Finer):
                 motion.release()
                 last, start = wish.image(history[-1]), wish.image(closing.start)
-                h, closing, reach = before  # nothing is known of the chunk
+                h, closing, reach = before  # the state before this chunk
                 engine, motion, still = wish.engine, MeshMotion(wish.engine), False
                 history = motion.adapted([motion.steered(last)])
                 for watch in (closing, reach):
@@ -168,7 +172,7 @@ def chunks(
 
 
 def _kept(chunk: Chunk) -> dict[str, Any]:
-    """What a journal keeps of a chunk: the loop writes to the other arrays the next time, and nobody to points and tangents."""
+    """Return the arrays of a chunk for a journal; points and tangents, which nobody changes, as read-only views, so that they need no copy."""
     values: dict[str, Any] = {part: getattr(chunk, part) for part in OF_SOLVED}
     for part in ("points", "tangents"):
         values[part] = values[part].view()
@@ -185,6 +189,7 @@ def _march(
     longest: float,
     stop_at_border: bool,
 ) -> tuple[Chunk, float]:
+    """March from the last points of a branch; return a chunk, and the next step."""
     first, n = len(history), engine.n
     size = first + capacity
     signs, corrections = np.zeros((2, size))
@@ -199,18 +204,32 @@ def _march(
 
 
 def _apart(engine: Engine, longest: float) -> float:
-    """The largest distance of neighbours after steps of at most this length; of a user's step rule nothing is known.
+    """Return a bound of the distance of neighbouring points after steps of at most this length; inf for a user-defined step rule.
 
-    The rule allows an error of angle < 1 times the length, and the step to the end of the interval may be 1.5^2 times as long.
+    The built-in rule allows an error of angle < 1 times the length, and the step to the end of the interval may be 1.5^2 times as long.
     """
     return 4.5 * longest if engine.settings.step_rule is BY_ANGLE else np.inf
 
 
 class Point(NamedTuple):
-    """A point of a branch, as ``trace`` yields it.
+    """A point of a branch, from ``trace``.
 
-    ``multipliers`` are those of the full period (eigenvalues for flows), ``margin`` is the smallest margin, ``stable`` is
-    None where stability is not computed, ``status`` is empty but for the last point, where it says why the branch ends.
+    Attributes
+    ----------
+    u : ndarray, shape (N,)
+        Unknowns.
+    value : float
+        Parameter value.
+    tangent : ndarray, shape (N + 1,)
+        Unit tangent in the metric.
+    multipliers : ndarray of complex
+        Multipliers of the full period (eigenvalues for flows).
+    margin : float
+        Smallest margin; inf without margins.
+    stable : bool or None
+        None if stability is not computed.
+    status : str
+        At the last point: a sentence on why the branch ends. Else empty.
     """
 
     u: np.ndarray
@@ -233,10 +252,10 @@ def trace(
     stop_at_border: bool = False,
     over: str | None = None,
 ) -> Iterator[Point]:
-    """The points of a branch, one by one; the caller's loop decides when to stop.
+    """Generate the points of a branch one by one; the caller's loop decides when to stop.
 
-    Nothing is looked for between the points. Special points, and steps to another branch where two nearly touch, are found by
-    ``diagram`` with ``depth=0``.
+    Special points are not sought, nor are steps detected that jump to another branch where two nearly touch; use ``diagram`` with ``depth=0``
+    for these.
 
     Parameters
     ----------
@@ -245,9 +264,9 @@ def trace(
     within : (float, float)
         Interval of the parameter.
     u, p : optional
-        Start; the orbit's own, or the problem's ``u0``, ``p0``, if left out.
+        Start; by default the orbit's own, or the problem's ``u0`` and ``p0``.
     direction : float
-        Positive: begin with increasing parameter.
+        Positive to begin with increasing parameter, negative with decreasing.
     settings : Settings or dict, optional
     stop_at_border : bool
         End with the first point that has a negative margin.
@@ -261,7 +280,7 @@ def trace(
     Raises
     ------
     ValueError
-        If the interval is no interval, the start is outside of it, or does not converge.
+        If the interval is invalid, the start is outside of it, or does not converge.
     """
     from .starts import check_interval, problem_and_start, solve_start
 
@@ -297,7 +316,7 @@ def trace(
 
 
 class MeshMotion:
-    """The motion of the mesh of an engine's problem; where it has no mesh, points stay as they are.
+    """Motion of the mesh of an engine's problem along a branch; without a mesh, points are not changed.
 
     Parameters
     ----------
@@ -309,26 +328,34 @@ class MeshMotion:
 
     @cached_property
     def standing_loop(self) -> InterpretedLoop | NativeLoop:
-        """The loop of a mesh that stands where it is."""
+        """Loop with a fixed mesh."""
         return self.engine.loop_with(self.engine.metric._replace(moving=None))
 
     def steered(self, point: Solved) -> Solved:
-        """The point, with the direction along which the mesh moves with the solution."""
+        """Return the point with the tangent in which the mesh moves with the solution."""
         return point if self.moving is None else self._along(point, self.moving.steer)
 
     def standing(self, point: Solved) -> Solved:
-        """The point, with the direction along which the mesh stands where it is."""
+        """Return the point with the tangent in which the mesh is fixed."""
         return point if self.moving is None else self._along(point, self.moving.stand)
 
     def _along(self, point: Solved, change: Callable[[np.ndarray, np.ndarray], None]) -> Solved:
+        """Return the point with a changed tangent, of unit length."""
         tangent = point.tangent.copy()
         change(point.u, tangent)
         return point._replace(tangent=self.engine.unit(tangent))
 
     def carried(self, u: np.ndarray, other: np.ndarray, tangent: np.ndarray) -> np.ndarray | None:
-        """Unknowns as they read on the mesh of those of the next point, where the mesh was adapted between both; else None.
+        """Return unknowns transferred to the mesh of the next point, if the mesh was adapted between both; else None.
 
-        There the way from one to the other is not along the tangent.
+        Adaptation shows in that the chord between the points is not along the tangent.
+
+        Parameters
+        ----------
+        u, other : ndarray, shape (N,)
+            Unknowns of both points.
+        tangent : ndarray, shape (N + 1,)
+            Tangent at the first one.
         """
         if self.moving is None:
             return None
@@ -338,9 +365,10 @@ class MeshMotion:
         return None if along else self.moving.carried(u, other)
 
     def adapted(self, history: list[Solved], still: bool = False) -> list[Solved]:
-        """The last points of a branch; where the mesh, or the phase that is kept, no longer suits the last one, that one alone, on a mesh that does.
+        """Adapt the mesh to the last point of a branch.
 
-        So it is, too, where the mesh is to stand still.
+        Returns the last points unchanged if mesh and phase still suit the last one; else only the last one, with its new mesh and phase. With `still`
+        the mesh is fixed for the next steps.
         """
         engine, problem = self.engine, self.adaptive
         if problem is None:
@@ -355,18 +383,19 @@ class MeshMotion:
             problem.anchor(u, last.p)
             found = engine.across(u, last.p, engine.unit(engine.join(direction, float(last.tangent[-1]))))
             if found is None or self._past_a_border(last, found):
-                # a border is met with the next steps on the mesh on which it is not there yet
+                # keep the old mesh, on which the border is still ahead
                 problem.anchor(last.u, last.p)
             else:
                 last = found
         return [last if still else self.steered(last)]
 
     def _past_a_border(self, before: Solved, after: Solved) -> bool:
+        """Whether a point has lost its positive margins by adaptation of the mesh."""
         margin = self.engine.smallest_margin
         return bool(margin(before.row) >= 0.0 > margin(after.row))
 
     def solved(self, guess: Solved) -> Solved | None:
-        """The solution across the tangent of a guess, in phase with that."""
+        """Solve for the solution in the plane orthogonal to the tangent of a guess, with the guess's phase; None without convergence."""
         assert self.adaptive is not None
         self.adaptive.anchor(guess.u, guess.p)
         guess = self.standing(guess)
@@ -376,6 +405,6 @@ class MeshMotion:
         return found
 
     def release(self) -> None:
-        """Keep the phase of no solution any more."""
+        """Remove the phase condition."""
         if self.adaptive is not None:
             self.adaptive.anchor(None)
