@@ -86,14 +86,6 @@ def reaches(ends):
     return all("end of the interval" in said for said in ends)
 
 
-def test_outputs_are_measures():
-    problem = cv.AlgebraicProblem(
-        lambda u, p: u - p**2, [0.0], 0.0, outputs={"energy": lambda u, p: 0.5 * u[0] ** 2 + p}
-    )
-    branch = cv.diagram(problem, within=(-1.0, 1.0))["B1"]
-    np.testing.assert_allclose(branch.measure("energy"), 0.5 * branch.values**4 + branch.values, atol=1e-12)
-
-
 @pytest.mark.parametrize("digits", [16, 8])
 def test_a_kink_is_told_from_noise(digits):
     """F rounded to eight digits: a kink is named where there is one, a smooth branch goes on to the end."""
@@ -202,17 +194,6 @@ def test_a_branch_is_left_before_what_is_not_finite():
 def test_a_branch_may_end_where_its_equations_do():
     # u = (1 + p)^2 by a root that becomes complex beyond the end of the interval, and has no derivative there
     assert reaches(ended(lambda u, p: np.emath.sqrt(u) - p - 1.0, [1.0], 0.0, (-1.0, 1.0)))
-
-
-def test_a_staircase_is_noise():
-    """Numbers of single precision are stairs, between which neighbouring samples tell nothing."""
-
-    def F(u, p):
-        return np.asarray(np.float32(u) ** 3 - np.float32(u) + np.float32(p), dtype=float)
-
-    graph = cv.diagram(cv.AlgebraicProblem(F, [1.0], 0.0), within=(-2.0, 2.0))
-    assert of_kind(graph, "fold") == pytest.approx([-2.0 / 27.0**0.5, 2.0 / 27.0**0.5], abs=1e-6)
-    assert not graph.unresolved
 
 
 def test_an_even_function_tells_how_large_its_unknown_is():
