@@ -87,7 +87,7 @@ def turning(draw, size):
 SEVERAL = (0, 1, 2)
 FACTORS = [
     *((normal, (length, n), 1e-9, SEVERAL) for n in (1, 2, 3, 4) for length in (1, 2, 5, 30)),
-    (normal, (1, 6), 1e-9, range(20)),
+    (normal, (1, 6), 1e-9, range(6)),
     *((graded, (n,), 1e-8, seeds) for n, seeds in ((2, (3, 6, 7)), (4, (1,)))),  # of bases that are no worse
     *((unlike, (length,), 1e-6, SEVERAL) for length in (1, 4, 30)),
     *((turning, (size,), 1e-8, SEVERAL) for size in (1e-40, 1.0, 1e60)),
