@@ -1,6 +1,7 @@
-"""What happens between two events: one protocol, fulfilled by closed forms (`native`) and by pages (`page`).
+"""The motion between two events, in closed form (`native`) or integrated (`page`: machines declared in a file), behind one protocol.
 
-A machine from its settings, its flow and its simulator; what belongs to one sort of machines is imported when one of it is asked for.
+Functions here make a machine from its settings, and find the flow and the simulator of a machine. Modules of one sort of machines are
+imported only when one of them is used.
 """
 
 from __future__ import annotations
@@ -25,12 +26,12 @@ Model = TypeVar("Model", bound="Varying")
 
 
 def flow_of(model: Model) -> Flow[Model]:
-    """The flow of a machine."""
+    """Return the flow of a machine."""
     return _flow(model.flow)
 
 
 def simulator_of(model: Varying, params: np.ndarray) -> Simulator:
-    """The simulator of a machine at these parameters."""
+    """Return a simulator of a machine at these parameters."""
     return _simulator(model.flow)(model, params)
 
 
@@ -57,7 +58,7 @@ def _simulator(name: str) -> type:
 
 
 def machine_of(settings: Mapping[str, Any]) -> BuiltIn | Structure:
-    """The machine with these settings, `name` among them (see `Model.settings`)."""
+    """Return the machine with these settings, `name` among them (see `Model.settings`)."""
     if "structure" in settings:
         from orbits.machines.structure import structure_again
 

@@ -1,4 +1,4 @@
-"""The equations of the cycles with one word: what those of all flows have in common, and Newton's method on them."""
+"""The equations of the cycles with one word, as far as all flows share them, and Newton's method for them."""
 
 from __future__ import annotations
 
@@ -22,20 +22,21 @@ if TYPE_CHECKING:
 ModelOf = TypeVar("ModelOf", bound="Varying")
 
 PLAIN = (1.0, 1.0)
-"""Length and rate of unknowns that are counted in the machine's own units."""
+"""Units of length and rate of unknowns in the machine's own units."""
 
 
 class Approach(NamedTuple):
-    """The speed with which an impact leaves its wall, in units of the unknowns, and how it depends on them.
+    """Speed with which an impact leaves its wall, in units of the unknowns, and its derivatives.
 
     Attributes
     ----------
     speed : float
     slopes : ndarray, shape (n,)
-        By the entries of the node.
+        Derivatives by the entries of the node.
     by_parameter : float
+        Derivative by the parameter.
     push : ndarray, shape (n,)
-        Direction of the node in which it is changed.
+        Direction in which a node is moved to change the speed.
     """
 
     speed: float
@@ -45,7 +46,7 @@ class Approach(NamedTuple):
 
 
 class CycleKernels(KernelFunctions, Protocol):
-    """What a continuation calls, and two of this package's own: Newton's method, and a look at one solution (see `orbits.flows.plain_kernels`)."""
+    """The kernels of a continuation, and two more: Newton's method, and the examination of one solution (see `orbits.flows.plain_kernels`)."""
 
     @property
     def newton(self) -> Callable[..., tuple[float, int, float]]: ...
@@ -54,7 +55,7 @@ class CycleKernels(KernelFunctions, Protocol):
 
 
 class Equations(ABC, Generic[ModelOf]):
-    """The equations of the cycles with one word, against one parameter. A symmetric cycle is solved for on half its word, closed by the mirror.
+    """The equations of the cycles with one word, against one parameter. A symmetric cycle is solved on half its word and closed by the mirror.
 
     Parameters
     ----------
@@ -64,8 +65,9 @@ class Equations(ABC, Generic[ModelOf]):
     periods : int
         Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
     parameter : str
+        Name of the varying parameter.
     params : float array (P,)
-        What `parameter` moves in it is the starting value only.
+        Parameter vector; its value of `parameter` is only a starting value.
     symmetric : bool
     whole : int
         Nodes of the whole cycle.
@@ -73,24 +75,24 @@ class Equations(ABC, Generic[ModelOf]):
     Attributes
     ----------
     length, dimension, n_multipliers, n_margins : int
-        Unknown nodes (half the word's, of a symmetric cycle), unknowns, multipliers, margins.
+        Numbers of unknown nodes (half the word's for a symmetric cycle), unknowns, multipliers and margins.
     twist, shift : float
-        Closure: the first node returns with its phase plus `shift`, all else times `twist`.
+        Closure: the first node returns with its phase plus `shift` and its other entries times `twist`.
     movable : bool
-        Whether solutions may be shifted as a whole, but for the mirror that holds them.
+        Whether solutions could be shifted as a whole if the mirror did not fix them.
     period_shift : float array (N,) or None
-        What a turn of the forcing adds to the unknowns.
+        Change of the unknowns when the forcing advances by one period; None without forcing.
     path : float array (2, P)
-        How the numbers follow the parameter (`orbits.machines.parameters`).
+        How the parameter vector depends on the parameter (`orbits.machines.parameters`).
     units : (float, float)
-        Length and rate in which the unknowns are counted; `unit` is what one of each entry of the nodes is, shape (L, n).
+        Units of length and rate of the unknowns; `unit` is the unit of each entry of the nodes, shape (L, n).
     data
-        What kernels are handed.
+        First argument of the kernels.
 
     Raises
     ------
     ValueError
-        If the parameter is unknown, or `symmetric` is asked where there is no symmetry.
+        If the parameter is unknown, or `symmetric` is set without a symmetry.
     """
 
     n_multipliers: int
@@ -134,40 +136,40 @@ class Equations(ABC, Generic[ModelOf]):
     @property
     @abstractmethod
     def kernels(self) -> CycleKernels:
-        """linearise, bordered, inspect, newton, examine."""
+        """The kernels: linearise, bordered, inspect, newton, examine."""
 
     @abstractmethod
     def workspace(self) -> Any:
-        """Arrays for the kernels."""
+        """Return new arrays for the kernels."""
 
     @cached_property
     def scratch(self) -> Any:
-        """A workspace for single calls, whose contents nobody relies on."""
+        """Shared workspace for single calls; its contents do not last."""
         return self.workspace()
 
     def values(self, p: float | np.ndarray) -> np.ndarray:
-        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
+        """Return the parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
         return along(self.path, self.params, p)
 
     def value(self, params: np.ndarray) -> float:
-        """The value of the parameter that varies in a parameter vector."""
+        """Return the value of the varying parameter in a parameter vector."""
         return self.model.amount(self.parameter, params)
 
     @cached_property
     def began(self) -> float:
-        """The value of the parameter that varies in the parameter vector."""
+        """Value of the varying parameter in `params`."""
         return self.value(self.params)
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        """Return the multipliers of the full period from those of the closure map (of half a period: their squares)."""
         spectrum = np.asarray(spectrum, dtype=complex)
         return spectrum**2 if self.twist < 0.0 else spectrum
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
-        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).
+        """Return the nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).
 
-        The image of half a cycle is taken about the middle between the walls at the parameter values `p`, shape (...); without
-        them at the one in the parameter vector.
+        The second half of a symmetric cycle is the image of the first about the middle between the walls, at the parameter values `p`, shape
+        (...); without them at `params`.
         """
         u = np.asarray(u, dtype=float)
         nodes = u.reshape(*u.shape[:-1], self.length, self.unit.shape[1])
@@ -180,14 +182,14 @@ class Equations(ABC, Generic[ModelOf]):
         return np.concatenate([nodes, image], axis=-2)
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
-        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        """Return the unknowns, shape (N,), from the nodes of the whole cycle."""
         own = np.array(nodes[: self.length], dtype=float, order="C")
         if self.units != PLAIN:
             own /= self.unit[: self.length]
         return own.ravel()
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
-        """Of the impact at a place; a dependence on the parameter that is no formula comes from a difference of size `near`.
+        """Return the speed of the impact at a place and its derivatives; `near` is the step of a difference quotient by the parameter.
 
         Raises
         ------
@@ -198,7 +200,11 @@ class Equations(ABC, Generic[ModelOf]):
 
     @abstractmethod
     def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray | None] | None:
-        """Derivatives of each flight's equations by the node before it and after it (None: each node by the one before), the mirror in the last."""
+        """Return the derivatives of each flight's equations by the node before it and by the node after it.
+
+        The mirror is included in the last flight. With None in place of the second, the first are derivatives of each node by the one before.
+        None if the equations cannot be evaluated or there are no flights.
+        """
 
 
 def newton(
@@ -208,14 +214,14 @@ def newton(
     border: np.ndarray | None = None,
     limit: int = 40,
 ) -> tuple[np.ndarray, float, float, np.ndarray]:
-    """Solve F(u, p) = 0 at fixed p, or in the hyperplane of `border` through the guess.
+    """Solve F(u, p) = 0 at fixed p, or in the hyperplane through the guess with normal vector `border`.
 
     Returns
     -------
     u : float array (N,)
     p : float
     residual : float
-        Infinity where it does not converge.
+        Largest residual; infinity if the method does not converge.
     tangent : float array (N + 1,)
         Direction of the branch, not normalised.
     """
@@ -234,7 +240,7 @@ def newton(
 def solved_nodes(
     system: Equations, nodes: np.ndarray, params: np.ndarray, limit: int = 40
 ) -> np.ndarray | None:
-    """Nodes of the solution next to these, at these parameters; None if Newton's method does not converge to one."""
+    """Return the nodes of the solution near these nodes, at these parameters; None if Newton's method does not converge."""
     value = system.value(params)
     u, residual = solved_at(system, system.reduce(nodes), value, limit)
     if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max(initial=0.0))):
@@ -243,6 +249,6 @@ def solved_nodes(
 
 
 def solved_at(system: Equations, guess: np.ndarray, p: float, limit: int = 40) -> tuple[np.ndarray, float]:
-    """Solution at a parameter value, and its residual (infinite if there is none)."""
+    """Return the solution at a parameter value, and its residual (infinite if there is none)."""
     u, _, residual, _ = newton(system, guess, p, limit=limit)
     return u, residual

@@ -1,45 +1,25 @@
-"""What happens between two events: one protocol, fulfilled by closed forms (`orbits.flows.native`) and by integrated flights (`orbits.flows.page`).
+"""What solvers and simulators need to know about the motion between two events: the protocols `Flow` and `Simulator`.
 
-The solving half, in words
---------------------------
-1. A *node* is an event in as many numbers as a motion has unknowns there: the phase (of a self-excited machine the duration of the flight
-   that follows), then coordinates on the event's surface or the states after it, as the flow likes. The mirror image of a node has all but
-   the first with the other sign (`image`: positions are counted from the middle between the walls); a motion is the same after a turn of 2 pi in the first.
-2. `equations` are F(u, p) = 0 for the cycles with one word: sizes, units, kernels (`contvines.problems.protocol`) with Newton's method and a
-   look at one solution beside them (`Equations`). They know how unknowns and nodes go together and say which margin to follow along a locus.
-   Margins come as the word's alphabet orders them (`Alphabet.watched`).
-   `coordinates` are what simulators call a point, `census` says how many starts of them are simulated.
-3. `loose` are the entries of a node along which any motion with a word may be shifted as a whole.
-4. `sample` has a motion over time, `positions` what no impulse moves, at equal phases from phase zero on, shape (m, c): motions are compared
-   by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong, places among
-   `coordinates` counted from 1. `points` are the simulator's coordinates just after the events, shape (L, d).
-   `strobed` has a motion without events once per period.
-5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first; `simulated_names` are those that a
-   simulation tells, `swept` those that a picture of a sweep shows, `in_units` has them in the units that are shown. `described` is what JSON has of events. `kind` is
-   "stuck" where nothing moves that could be hit, "sliding" where a shaken absorber hits no wall, else "periodic".
-6. At a border, `vanishing` says what the vanishing margin watches, where, and what the laws of the contacts need to know of it; `placed` are
-   the nodes of the events that they propose; `without_events` the node of a motion that has lost its last event (None: that is at rest).
-   `restitution` is that of an impact. Of equations, `approach` is the speed with which an impact leaves its wall, and `through_flights` are the
-   derivatives of a round's flights (with the mirror, where a round is half a cycle).
-7. `closed_form` says whether flights are known in closed form, so that something can be proved of them.
+Built-in machines fulfil them with closed forms (`orbits.flows.native`), declared machines with integrated flights (`orbits.flows.page`).
 
-The stepping half, in words
----------------------------
-A *simulator* moves one motion of a machine on at given parameters, from event to event. It knows no word, no equation of cycles and no border.
+Terms
+-----
+node
+    The unknowns of one event: the clock, then coordinates on the event's surface or the states just after the event, as the flow
+    chooses. A cycle with L events has nodes of shape (L, n).
+clock
+    Of a forced machine the phase of the forcing in radians, counted through (2 pi per forcing period). Of a self-excited machine
+    the time; the clock of its nodes is the duration of the flight that follows.
+point
+    The coordinates of a simulator, positions and velocities in the order of its `names`, at a given time.
+time of a simulator
+    The clock over 2 pi: forcing periods of a forced machine.
+mirror image
+    Of a node: all entries but the clock change sign (positions count from the middle between the walls).
 
-1. Time is counted in forcing periods (of a self-excited machine: in 2 pi of its time), whole ones included. A *point* is where the motion is at a
-   given time: the coordinates `names`, positions and velocities.
-2. ``start(point, time, modes=None)`` puts the motion there. What is in contact, and how it slides, follows from the point unless it is given.
-   ``put`` does so with a start as users give it, ``go_on`` with the ``state`` in which another simulation has ended.
-3. ``follow(until)`` moves it on; what may happen (gaps that close, velocities that vanish, limits of friction that are reached, switches that
-   are crossed) is looked for all the way, and the laws of the contacts are applied. No event, hop or touch is passed unseen.
-4. ``run(length, most)`` does the same for a while or so many events, and keeps the motion (`orbits.flows.trajectory`).
-5. A motion that cannot go on (it leaves the range of numbers, or a law does not continue it) or cannot begin raises `SimulationError`.
-6. ``struck(point, near)`` tells the two points that are one motion at a wall: just before and just after the impact.
-7. ``mirrored`` says that the ``image`` of a point, half a period later, is a point of the same machine. ``hard`` says which coordinates walls limit by themselves.
-   ``watched`` is (periods, events) of the motion in which near returns are looked for, ``waiting`` how long it is followed until it settles,
-   ``observed`` for how many periods what does not recur is looked at, at first and at most (0: no more than that by which it is recognised),
-   ``modulated`` for how many its modulation. ``resting`` and ``wandering`` are what attractors at rest and such that do not recur are called, ``roomy`` says whether there is room for two incommensurate frequencies, ``count`` how many events there were, where they are counted.
+A flow (`Flow`) gives equations of cycles, samples and measures of their solutions, and the vanishing event at a border. A simulator
+(`Simulator`) moves one motion of a machine on, from event to event. It uses no word, no equations of cycles and no borders. It detects
+every event on the way (gaps that close, velocities that vanish, limits of friction, switch surfaces) and applies the laws of the contacts.
 """
 
 from __future__ import annotations
@@ -68,7 +48,7 @@ Run = TypeVar("Run", bound=Trajectory)
 
 
 class Motion(Protocol[ModelSeen]):
-    """What a flow is asked about: word, nodes and parameters of a cycle (`orbits.cycle.Cycle`)."""
+    """A cycle as flows receive it: word, nodes and parameters (fulfilled by `orbits.cycle.Cycle`)."""
 
     @property
     def model(self) -> ModelSeen: ...
@@ -87,16 +67,16 @@ class Motion(Protocol[ModelSeen]):
 
 
 class SimulationError(ValueError):
-    """A start or a length of a run that cannot be, or a motion that does not go on; the sentence says the way out."""
+    """An impossible start or length of a run, or a motion that cannot go on; the message gives the remedy."""
 
 
 def checked_start(start: Mapping[str, float], allowed: Sequence[str]) -> dict[str, float]:
-    """The entries of a start as numbers.
+    """Return the entries of a start as numbers.
 
     Raises
     ------
     SimulationError
-        If a name is unknown or a value not finite.
+        If a name is unknown or a value is not finite.
     """
     for key, value in start.items():
         if key not in allowed:
@@ -109,24 +89,24 @@ def checked_start(start: Mapping[str, float], allowed: Sequence[str]) -> dict[st
 
 
 class Waiting(NamedTuple):
-    """How long a motion is followed until what it settles on is seen.
+    """How long a simulated motion is followed until it settles.
 
     Attributes
     ----------
     transient : float
-        Forcing periods (of a self-excited machine: events) that are left out first.
+        Length left out first: forcing periods (of a self-excited machine: events).
     tries, in_sweeps : int
-        How often they are prolonged where nothing recurs, and at each value of a sweep.
+        How often the transient is prolonged if nothing recurs, for a single motion and at each value of a sweep.
     longer : int
-        So many times.
+        Factor of each prolongation.
     returned : float
-        Largest difference of points, relative to 1 + points, of a motion that has returned.
+        Largest difference between a point and its return, relative to 1 + size of the points.
     early : int
-        Part of the transient after which a first look is had, at short cycles; 0: none.
+        A first search for short cycles begins after the transient divided by this; 0: no such search.
     slow : float
-        Forcing periods for which a motion is waited for that recurs but for a drift which fades or grows.
+        Longest wait, in forcing periods, for a motion that recurs except for a growing or decaying drift.
     events : float
-        After so many a motion is followed no further.
+        Largest number of events.
     """
 
     transient: float
@@ -147,11 +127,11 @@ class Census(NamedTuple):
     across : int
         Starts along an edge of a picture of basins.
     brief : (int, int)
-        Values, and starts at each, of a brief look.
+        Of a brief search: number of parameter values, and of starts at each.
     price : float
-        What a simulated forcing period costs, as a multiple of one of a machine in closed form.
+        Cost of simulating one forcing period, relative to a machine in closed form.
     longest, embedded : int
-        Forcing periods of the longest recurrence that is looked for, and of the longest unstable cycle.
+        Longest recurrence to search for, and longest unstable cycle, in forcing periods.
     """
 
     across: int
@@ -162,7 +142,7 @@ class Census(NamedTuple):
 
 
 class Outcome(IntEnum):
-    """What became of a motion: it recurs, is at rest for ever, left the range of numbers, or does none of these yet."""
+    """Result of following one motion: it recurs, rests for ever, has left the range of numbers, or is still undecided."""
 
     WANDERING = 0
     SETTLED = 1
@@ -171,20 +151,20 @@ class Outcome(IntEnum):
 
 
 class Batch(NamedTuple):
-    """Many motions that were run until they recur.
+    """Many motions, run until they recur.
 
     Attributes
     ----------
     outcomes, periods : int array (n,)
-        `Outcome` of each, and forcing periods of its recurrence.
+        `Outcome` of each motion, and the forcing periods after which it recurs.
     gaps : float array (n,)
-        Least difference of a return.
+        Smallest difference between a state and its return.
     states, points : float array (n, S), (n, d)
-        Where they are at the end, at a whole forcing period.
+        States and points at the end, at a whole forcing period.
     lasted : float array (n,)
-        Forcing periods for which each was followed.
+        Forcing periods for which each motion was followed.
     growth : float
-        Forcing periods that the growth of small differences takes.
+        Cost, in forcing periods, of computing a Lyapunov exponent.
     """
 
     outcomes: np.ndarray
@@ -197,7 +177,33 @@ class Batch(NamedTuple):
 
 
 class Simulator(Protocol[ModelOf, Run]):
-    """A motion on its way; the contract is at the top of this module."""
+    """Moves one motion of a machine on, at given parameters, from event to event.
+
+    A motion that cannot begin or cannot go on (not finite, or no contact law continues it) raises `SimulationError`.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Coordinates of a point.
+    hard : bool array (d,)
+        Coordinates that walls limit by themselves.
+    watched : (float, int)
+        Periods and events of the run that is searched for near returns.
+    waiting : Waiting
+        How long a motion is followed until it settles.
+    observed : (float, float)
+        Forcing periods for which a motion that does not recur is observed, at first and at most; 0: only the run that was searched.
+    modulated : float
+        Forcing periods in which its modulation is measured.
+    resting, wandering : str
+        Kinds of attractors at rest, and of those that do not recur.
+    roomy : bool
+        Whether there are enough dimensions for two incommensurate frequencies.
+    count : float
+        Events so far, if they are counted.
+    state : float array (S,)
+        State from which `go_on` continues in another simulation.
+    """
 
     model: ModelOf
     params: np.ndarray
@@ -215,109 +221,131 @@ class Simulator(Protocol[ModelOf, Run]):
     state: np.ndarray
 
     @property
-    def modes(self) -> Mode: ...
+    def modes(self) -> Mode:
+        """Modes of the contacts."""
+        ...
     @property
-    def time(self) -> float: ...
+    def time(self) -> float:
+        """Time: the clock over 2 pi."""
+        ...
     @property
-    def point(self) -> np.ndarray: ...
+    def point(self) -> np.ndarray:
+        """Present coordinates."""
+        ...
     @property
     def mirrored(self) -> bool:
-        """Whether the machine equals its mirror image."""
+        """Whether the machine equals its mirror image: the `image` of a point, half a period later, is then a point of the same machine."""
         return self.model.has_mirror(self.params)
 
     def image(self, point: np.ndarray) -> np.ndarray:
-        """A point mirrored about the middle between the walls."""
+        """Return a point mirrored about the middle between the walls."""
         image = -point
         image[0] += 2.0 * float(self.model.middle(self.params))
         return image
 
-    def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None: ...
+    def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None:
+        """Begin at a point; the modes of the contacts follow from it if they are not given."""
+        ...
 
     def put(self, start: Mapping[str, float] | np.ndarray | None) -> None:
         """Begin at a start by names, or at a state."""
         ...
 
     def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray:
-        """The state of a start."""
+        """Return the state of a start."""
         ...
 
     def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
-        """Begin where another simulation has ended, changed a little."""
+        """Begin at the final `state` of another simulation, perturbed by `nudge`."""
         ...
 
     def run(self, periods: float, most: int) -> Run:
-        """Move on and keep the motion."""
+        """Move on by `periods` or at most `most` events, and return the motion."""
         ...
 
     def begin(self, word: Word, node: np.ndarray) -> None:
-        """Put the motion just after the first event of a cycle with this word, of which `node` are the unknowns."""
+        """Begin just after the first event of a cycle with this word, at the unknowns `node`."""
         ...
 
     def follow(self, until: float) -> None:
-        """Move on."""
+        """Move on to the time `until`, applying every event on the way."""
         ...
 
     def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Move on by a period of a cycle: so many forcing periods, of a self-excited machine until its word has passed.
+        """Move on by one period of a cycle: forcing periods, or, of a self-excited machine, until the events of its word are over.
+
+        Parameters
+        ----------
+        word : Word
+        periods : int
+        index : int, optional
+            Place of the parameter by which to differentiate.
 
         Returns
         -------
         by_state : float array (d, d)
-            Derivatives of the point by the one before.
+            Derivatives of the new point by the old one.
         by_value : float array (d,)
-            By the parameter with this index; both NaN where no index is given, or the simulator does not know them.
+            Derivatives by the parameter. Both are NaN without an index, or if the simulator cannot differentiate.
         """
         self.follow(self.time + periods)
         n = len(self.names)
         return np.full((n, n), np.nan), np.full(n, np.nan)
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere."""
+        """Return the counterpart, across the impact, of a point within `near` of a wall.
+
+        Returns
+        -------
+        (point, direction) or None
+            The point just after the impact of a point just before it, or the other way round, and the direction away from the wall; None
+            for a point that is not at a wall.
+        """
         ...
 
     def skip(self, count: float) -> bool:
-        """Move on by so many forcing periods, of a self-excited machine so many events; whether there were as many."""
+        """Move on by `count` forcing periods (self-excited: events) without keeping them; return whether that many happened."""
         ...
 
     def look(self, longest: int) -> Run:
-        """The run in which a recurrence of up to so many forcing periods (25 times as many events) is looked for."""
+        """Run long enough to find a recurrence of up to `longest` forcing periods (self-excited: 25 times as many events)."""
         ...
 
     def rests(self, run: Run, last: bool) -> bool | None:
-        """Whether the motion has come to rest for good; None where that is yet to be seen, unless it is the last look."""
+        """Return whether the motion has come to rest for good; None if undecided, which is not possible with `last`."""
         ...
 
     def move_on(self, run: Run, longest: int) -> bool:
-        """Move a motion that creeps to where that ends; whether it does."""
+        """Move a creeping motion to the place where its creep ends; return whether it was moved."""
         return False
 
     def push(self) -> None:
-        """Help a motion to leave another one that repels, on which only rounding keeps it."""
+        """Perturb a motion that may stay on an unstable one only because of exact numbers."""
 
     def section(self) -> tuple[str, np.ndarray]:
-        """Move on to the next whole forcing period, of a self-excited machine to the next event: that event, and the point there."""
+        """Move on to the next whole forcing period (self-excited: the next event); return that event's letter and the point there."""
         self.follow(math.floor(self.time) + 1.0)
         return "", self.point
 
     def box(self) -> np.ndarray:
-        """Smallest and largest value of phase and coordinates among which starts are drawn, shape (n, 2); no phase of a self-excited machine."""
+        """Return the smallest and largest phase and coordinates of random starts, shape (n, 2); without phase for a self-excited machine."""
         ...
 
     def free(self, points: np.ndarray) -> np.ndarray:
-        """Which starts lie outside the walls, bool array (m,)."""
+        """Return which starts lie outside the walls, bool array (m,)."""
         return np.ones(len(points), dtype=bool)
 
     def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch | None:
-        """Run starts, all at once, until they recur after at most so many forcing periods; None where nothing is gained by that."""
+        """Run all starts together until they recur within `longest` forcing periods; None if this is not faster than one by one."""
         return None
 
     def settle_longer(
         self, batch: Batch, here: np.ndarray, longest: int, periods: float, workers: int | None
     ) -> None:
-        """Run those of a batch (bool array (n,)) that have not recurred for so many more periods; the batch is changed in place."""
+        """Run the motions `here` (bool array (n,)) of a batch, which have not recurred, for up to `periods` more; the batch is changed in place."""
 
     def growth(self) -> tuple[float, float]:
-        """Largest Lyapunov exponent of the motion, per forcing period, and its standard error."""
+        """Return the largest Lyapunov exponent per forcing period, and its standard error."""
         ...
 
 
@@ -327,7 +355,7 @@ def later(
     length: float,
     time: float = 0.0,
 ) -> np.ndarray:
-    """Where the motion through a point is so much later; NaN where it does not get there."""
+    """Return the point after a `length` of time on the motion through a point; NaN if the motion fails."""
     try:
         simulator.start(point, time)
         simulator.follow(time + length)
@@ -337,16 +365,16 @@ def later(
 
 
 class Vanishing(NamedTuple):
-    """What vanishes at a border.
+    """The event that vanishes at a border.
 
     Attributes
     ----------
     site : Site
-        The border orbit's word, seen from the event to which the margin belongs.
+        Word of the border orbit and place of the event whose margin vanishes.
     watched : int
-        Index of the contact that is met in the flight after the event, or one of `orbits.words.alphabet.Watch`.
+        Index of the contact that is touched in the flight after the event, or one of `orbits.words.alphabet.Watch`.
     touch : (float, ndarray) or None
-        Where in the flight: clock ahead of the event before, and the other entries of a node there.
+        Place of the touch in the flight: clock since the event before, and the other entries of a node there.
     """
 
     site: Site
@@ -355,21 +383,43 @@ class Vanishing(NamedTuple):
 
 
 class Flow(Protocol[ModelOf]):
-    """What a flow answers; see the top of this module."""
+    """Everything that depends on how a machine moves between two events.
+
+    Attributes
+    ----------
+    angles : tuple of str
+        Measures in radians modulo 2 pi.
+    closed_form : bool
+        Whether flights are known in closed form, as proofs need it.
+    resolution : float
+        Two motions whose `positions` differ by less are the same.
+    seconds : str
+        Column name of the time in samples.
+    measure_names : callable
+        Names of all measures of a machine.
+    measures : callable
+        (model, word, periods, nodes (m, L, n), params (m, P), names) -> measures by name, each of shape (m,).
+    """
 
     angles: ClassVar[tuple[str, ...]]
     closed_form: ClassVar[bool]
     resolution: ClassVar[float]
     seconds: ClassVar[str]
-    """What a sample calls the time."""
     measure_names: Callable[[ModelOf], tuple[str, ...]]
     measures: Callable[[ModelOf, Word, int, np.ndarray, np.ndarray, Sequence[str]], dict[str, np.ndarray]]
-    """Of model, word, periods, nodes (m, L, n), params (m, P) and the names that are wanted."""
 
-    def census(self, model: ModelOf) -> Census: ...
-    def coordinates(self, model: ModelOf) -> tuple[str, ...]: ...
-    def position_entries(self, model: ModelOf) -> tuple[int, ...]: ...
-    def points(self, motion: Motion[ModelOf]) -> np.ndarray: ...
+    def census(self, model: ModelOf) -> Census:
+        """Return how starts of this machine are sampled."""
+        ...
+    def coordinates(self, model: ModelOf) -> tuple[str, ...]:
+        """Return the names of a simulator's coordinates."""
+        ...
+    def position_entries(self, model: ModelOf) -> tuple[int, ...]:
+        """Return the entries of a node that hold `positions`: indices of `coordinates`, counted from 1."""
+        ...
+    def points(self, motion: Motion[ModelOf]) -> np.ndarray:
+        """Return the simulator's coordinates just after the events, shape (L, d)."""
+        ...
 
     def equations(
         self,
@@ -380,30 +430,52 @@ class Flow(Protocol[ModelOf]):
         params: np.ndarray,
         symmetric: bool = False,
         units: tuple[float, float] | None = None,
-    ) -> Equations: ...
+    ) -> Equations:
+        """Return the equations of the cycles with this word, against `parameter`."""
+        ...
 
-    def loose(self, model: ModelOf, word: Word) -> tuple[int, ...]: ...
-    def strobed(self, motion: Motion[ModelOf]) -> np.ndarray: ...
-    def default_measure(self, model: ModelOf) -> str: ...
-    def simulated_names(self, model: ModelOf) -> tuple[str, ...]: ...
-    def swept(self, model: ModelOf) -> tuple[str, ...]: ...
-    def in_units(self, model: ModelOf, params: np.ndarray, values: dict[str, float]) -> dict[str, float]: ...
-    def described(self, motion: Motion[ModelOf]) -> dict[str, Any]: ...
-    def kind(self, motion: Motion[ModelOf]) -> str: ...
-    def restitution(self, motion: Motion[ModelOf], place: int) -> float: ...
-    def without_events(self, motion: Motion[ModelOf]) -> np.ndarray | None: ...
+    def loose(self, model: ModelOf, word: Word) -> tuple[int, ...]:
+        """Return the entries of a node along which every motion with this word can be shifted as a whole."""
+        ...
+    def strobed(self, motion: Motion[ModelOf]) -> np.ndarray:
+        """Return the coordinates of a motion without events, once per forcing period."""
+        ...
+    def default_measure(self, model: ModelOf) -> str:
+        """Return the measure shown if none is chosen."""
+        ...
+    def simulated_names(self, model: ModelOf) -> tuple[str, ...]:
+        """Return the names of the measures that a simulation gives."""
+        ...
+    def swept(self, model: ModelOf) -> tuple[str, ...]:
+        """Return the names of the measures in a picture of a sweep."""
+        ...
+    def in_units(self, model: ModelOf, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
+        """Convert measures to the units in which they are shown."""
+        ...
+    def described(self, motion: Motion[ModelOf]) -> dict[str, Any]:
+        """Return the JSON-able description of the events."""
+        ...
+    def kind(self, motion: Motion[ModelOf]) -> str:
+        """Return "stuck" if nothing moves that could hit, "sliding" if a shaken absorber hits no wall, else "periodic"."""
+        ...
+    def restitution(self, motion: Motion[ModelOf], place: int) -> float:
+        """Return the coefficient of restitution of the impact at a place."""
+        ...
+    def without_events(self, motion: Motion[ModelOf]) -> np.ndarray | None:
+        """Return the nodes of the motion after its last event has vanished; None if that is the absorber at rest."""
+        ...
 
     # ------------------------------------------------------------------ between the events
     def flown(self, motion: Motion[ModelOf], places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-        """Coordinates, shape (m, d), so long (clock, shape (m,)) after the events `places`, whatever happens on the way."""
+        """Return coordinates, shape (m, d), at clocks `ahead` (m,) after the events `places`, as if no other event happened."""
         ...
 
     def columns(self, motion: Motion[ModelOf], table: np.ndarray) -> dict[str, np.ndarray]:
-        """By name what a sample has of coordinates (m, d)."""
+        """Return the columns of a sample by name, from coordinates (m, d)."""
         return dict(zip(self.coordinates(motion.model), table.T))
 
     def sample(self, motion: Motion[ModelOf], points: int = 400) -> dict[str, np.ndarray]:
-        """About so many instants of one period, at least two per flight: events are included with what is before and after them."""
+        """Sample one period at about `points` instants, at least two per flight: each event appears with the states before and after it."""
         lasting = motion.durations
         durations = np.maximum(lasting, 0.0)
         counts = np.maximum(2, np.rint(points * durations / max(float(lasting.sum()), SMALLEST))).astype(int)
@@ -422,7 +494,7 @@ class Flow(Protocol[ModelOf]):
         }
 
     def at_phases(self, motion: Motion[ModelOf], phases: np.ndarray) -> np.ndarray:
-        """Coordinates of a forced motion at phases from 0 on, shape (m, d)."""
+        """Return the coordinates of a forced motion at phases from 0 on, shape (m, d)."""
         whole, first = TWO_PI * motion.periods, motion.nodes[0, 0]
         wanted = (phases - first) % whole
         wanted[wanted >= whole] = 0.0  # of a phase just below zero
@@ -431,21 +503,29 @@ class Flow(Protocol[ModelOf]):
         return self.flown(motion, places, wanted - begins[places])
 
     def positions(self, motion: Motion[ModelOf], instants: int) -> np.ndarray:
-        """What no impulse moves, at so many equal phases of each forcing period, shape (periods * instants, c)."""
+        """Return the coordinates that no impulse changes, at equal phases from phase zero on, shape (periods * instants, c).
+
+        Motions are compared by them: they are equal if their positions differ by less than `resolution`.
+        """
         count = instants * motion.periods
         phases = np.arange(count) * (TWO_PI * motion.periods / count)
         return self.at_phases(motion, phases)[:, [entry - 1 for entry in self.position_entries(motion.model)]]
 
     # ------------------------------------------------------------------ at borders
-    def vanishing(self, motion: Motion[ModelOf], index: int, unit: int) -> Vanishing | None: ...
+    def vanishing(self, motion: Motion[ModelOf], index: int, unit: int) -> Vanishing | None:
+        """Return the event that vanishes with margin `index` of a border orbit, over its whole cycle; None if no word follows."""
+        ...
 
     def placed(self, motion: Motion[ModelOf], found: Vanishing, place: int, change: Change) -> np.ndarray:
-        """The nodes of a change's new events: at the border the old and the new description are the same motion, so they are where the margin vanished."""
+        """Return the nodes of the new events of a changed word.
+
+        At the border the old and the new word describe the same motion, so every new event lies at an old event or where the margin vanished.
+        """
         rows = [self.node_at(motion, place, spot, found) for spot in change.spots]
         return np.array(rows) if rows else motion.nodes[:0]
 
     def node_at(self, motion: Motion[ModelOf], place: int, spot: Spot, found: Vanishing) -> np.ndarray:
-        """The node of a spot; an event that is inserted into a self-excited motion has the clock from the flight's start."""
+        """Return the node of a spot; the clock of an event inserted into a self-excited motion counts from the flight's start."""
         forced, nodes = motion.model.forced, motion.nodes
         if spot.node is None:
             assert found.touch is not None
