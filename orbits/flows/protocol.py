@@ -224,14 +224,17 @@ class Simulator(Protocol[ModelOf, Run]):
     def modes(self) -> Mode:
         """Modes of the contacts."""
         ...
+
     @property
     def time(self) -> float:
         """Time: the clock over 2 pi."""
         ...
+
     @property
     def point(self) -> np.ndarray:
         """Present coordinates."""
         ...
+
     @property
     def mirrored(self) -> bool:
         """Whether the machine equals its mirror image: the `image` of a point, half a period later, is then a point of the same machine."""
@@ -411,12 +414,15 @@ class Flow(Protocol[ModelOf]):
     def census(self, model: ModelOf) -> Census:
         """Return how starts of this machine are sampled."""
         ...
+
     def coordinates(self, model: ModelOf) -> tuple[str, ...]:
         """Return the names of a simulator's coordinates."""
         ...
+
     def position_entries(self, model: ModelOf) -> tuple[int, ...]:
         """Return the entries of a node that hold `positions`: indices of `coordinates`, counted from 1."""
         ...
+
     def points(self, motion: Motion[ModelOf]) -> np.ndarray:
         """Return the simulator's coordinates just after the events, shape (L, d)."""
         ...
@@ -437,30 +443,39 @@ class Flow(Protocol[ModelOf]):
     def loose(self, model: ModelOf, word: Word) -> tuple[int, ...]:
         """Return the entries of a node along which every motion with this word can be shifted as a whole."""
         ...
+
     def strobed(self, motion: Motion[ModelOf]) -> np.ndarray:
         """Return the coordinates of a motion without events, once per forcing period."""
         ...
+
     def default_measure(self, model: ModelOf) -> str:
         """Return the measure shown if none is chosen."""
         ...
+
     def simulated_names(self, model: ModelOf) -> tuple[str, ...]:
         """Return the names of the measures that a simulation gives."""
         ...
+
     def swept(self, model: ModelOf) -> tuple[str, ...]:
         """Return the names of the measures in a picture of a sweep."""
         ...
+
     def in_units(self, model: ModelOf, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
         """Convert measures to the units in which they are shown."""
         ...
+
     def described(self, motion: Motion[ModelOf]) -> dict[str, Any]:
         """Return the JSON-able description of the events."""
         ...
+
     def kind(self, motion: Motion[ModelOf]) -> str:
         """Return "stuck" if nothing moves that could hit, "sliding" if a shaken absorber hits no wall, else "periodic"."""
         ...
+
     def restitution(self, motion: Motion[ModelOf], place: int) -> float:
         """Return the coefficient of restitution of the impact at a place."""
         ...
+
     def without_events(self, motion: Motion[ModelOf]) -> np.ndarray | None:
         """Return the nodes of the motion after its last event has vanished; None if that is the absorber at rest."""
         ...
