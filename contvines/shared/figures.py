@@ -270,6 +270,7 @@ def legend_below(axes: Axes, handles: Sequence[Artist], own: bool) -> None:
     if own:
         place, room = {"loc": "outside lower center"}, figure.bbox.width
     else:
+        settle(figure)
         place, room = {"loc": "upper center", "borderaxespad": 0.0}, axes.bbox.width
     columns, rows = len(handles), 1
     legend = (figure if own else axes).legend(ncols=columns, **place, **look)
