@@ -1,4 +1,4 @@
-"""Kernels in plain Python: what all of them have, Newton's method and the look at one solution."""
+"""Kernels in plain Python: bordered solution, Newton's method and the examination of one solution, for all sorts of machines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 FLAT = 2
-"""Steps from a solution to itself after which its residual is roundoff."""
+"""Number of steps that leave the residual unchanged and below `accepted`, after which it counts as roundoff."""
 
 
 Data = TypeVar("Data")
@@ -25,35 +25,38 @@ Work = TypeVar("Work", bound=tuple)
 
 @cache
 def _gesv() -> Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray, int]]:
-    """LAPACK's solver with its factors: unlike getrs it does not wake other threads for a matrix of a few rows."""
+    """LAPACK's solver that also returns the factors; unlike getrs it starts no threads for a matrix of a few rows."""
     from scipy.linalg import get_lapack_funcs
 
     return get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))[0]
 
 
 class PlainKernels(ABC, Generic[Data, Work]):
-    """The functions that a continuation calls, and two of this package's own; signatures as in `contvines.core.table.TableKernels`."""
+    """The kernels of a continuation (signatures as in `contvines.core.table.TableKernels`), and `newton` and `examine`."""
 
     compiled = False
     column: int
-    """Place of F_p among the arrays of a workspace; F is the first."""
+    """Index of F_p among the arrays of a workspace; F is the first."""
     accepted = 0.0
-    """Residual of a solution whose steps do not become any smaller."""
+    """Largest residual that is accepted as roundoff if further steps do not reduce it."""
     patience = math.inf
-    """Evaluations, as a share of the steps, that Newton's method may spend on steps that do not halve the residual."""
+    """Evaluations, as a share of the limit of steps, that Newton's method may spend on steps that do not halve the residual."""
 
     @abstractmethod
     def linearise(self, data: Data, u: np.ndarray, p: float, work: Work) -> float:
-        """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
+        """Write residual and derivatives into `work`; return the largest residual, infinity if it cannot be evaluated."""
 
     @abstractmethod
     def fill(self, data: Data, work: Work, matrix: np.ndarray) -> None:
-        """F_u of the linearisation in `work`, shape (N, N), into a matrix of zeros."""
+        """Write F_u of the linearisation in `work`, shape (N, N), into a matrix of zeros."""
 
     def bordered(
         self, data: Data, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
     ) -> float:
-        """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign, 0 if it is singular."""
+        """Solve the bordered system with the linearisation in `work`.
+
+        [[F_u, F_p], [border]] z = (-F, target) into `step`, and = (0, 1) into `tangent`. Returns the sign of the determinant; 0 if singular.
+        """
         size = len(border) - 1
         matrix, sides = np.zeros((size + 1, size + 1), order="F"), np.zeros((size + 1, 2), order="F")
         self.fill(data, work, matrix[:size, :size])
@@ -77,7 +80,7 @@ class PlainKernels(ABC, Generic[Data, Work]):
 
     @abstractmethod
     def inspect(self, data: Data, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> None:
-        """Multipliers of the closure map as (re, im) pairs, then margins, into `row`."""
+        """Write multipliers of the closure map as pairs (re, im), then margins, into `row`."""
 
     def newton(
         self,
@@ -91,7 +94,16 @@ class PlainKernels(ABC, Generic[Data, Work]):
         tolerance: float,
         limit: int,
     ) -> tuple[float, int, float]:
-        """Newton's method at fixed p, or on the hyperplane of `border`; steps that do not help are halved."""
+        """Newton's method at fixed p, or in the hyperplane with normal vector `border`; steps that do not reduce the residual are halved.
+
+        Returns
+        -------
+        residual : float
+            Infinity if the method does not converge.
+        iterations : int
+        p : float
+            `u` is changed in place.
+        """
         residual, idle, flat = self.linearise(data, u, p, work), 0, 0
         for iteration in range(limit):
             if not math.isfinite(residual):
@@ -117,7 +129,7 @@ class PlainKernels(ABC, Generic[Data, Work]):
         return residual if residual < self.accepted else math.inf, limit, p
 
     def examine(self, data: Data, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> float:
-        """Residual, and the row of `inspect`, of one solution; the row is not a number where it cannot be evaluated."""
+        """Return the residual of one solution and write its `inspect` row; NaN if it cannot be evaluated."""
         residual = self.linearise(data, u, p, work)
         if math.isfinite(residual):
             self.inspect(data, u, p, work, row)

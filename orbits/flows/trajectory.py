@@ -1,4 +1,4 @@
-"""A simulated motion: its events, and where it is at any time between them."""
+"""A simulated motion: its events, and its states at any time between them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ModelOf = TypeVar("ModelOf", bound="Varying", covariant=True)
 
 @dataclass(frozen=True, eq=False)
 class Trajectory(ABC, Generic[ModelOf]):
-    """A simulated motion; a flow says what lies between the events.
+    """A simulated motion; subclasses give the states between the events.
 
     Attributes
     ----------
@@ -36,9 +36,9 @@ class Trajectory(ABC, Generic[ModelOf]):
     finish : float
         Clock at which the run ended.
     kinds : int array (m,)
-        What the events do (`orbits.contacts`).
+        Kinds of the events (`orbits.contacts`).
     status : int
-        Why the run ended (`orbits.machines.stepping`); `ended` says it in words.
+        Reason for the end of the run (`orbits.machines.stepping`); `ended` gives it in words.
     """
 
     model: ModelOf
@@ -55,40 +55,43 @@ class Trajectory(ABC, Generic[ModelOf]):
 
     @property
     def whole(self) -> bool:
-        """Whether the run goes on to the time asked for."""
+        """Whether the run reached its requested end."""
         return self.status == TIME_REACHED
 
     @property
     def stopped(self) -> bool:
-        """Whether nothing will ever happen again."""
+        """Whether no further event will ever happen."""
         return self.status == REST
 
     @cached_property
     @abstractmethod
     def letters(self) -> Sequence[str]:
-        """The events as they are written."""
+        """Letters of the events."""
 
     @property
     @abstractmethod
     def occurrences(self) -> Sequence[Hashable]:
-        """What happened at the events, with the modes after them: events that are alike are equal."""
+        """Letter of each event with the modes after it; equal entries are equal events."""
 
     @property
     @abstractmethod
     def held(self) -> bool:
-        """Whether a wall holds the body from the beginning to the end."""
+        """Whether a wall holds the body during the whole run."""
 
     @property
     def reason(self) -> str:
-        """Why the run ended."""
+        """The reason for the end of the run."""
         return STATUS[self.status]
 
     @abstractmethod
     def flown(self, places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-        """What a flow knows, shape (m, c), so long (clock) after the start (place 0) and the events (from 1 on): coordinates first."""
+        """Return the motion at clocks `ahead` after the start (place 0) or after event `place` (from 1 on), shape (m, c).
+
+        The first columns are the simulator's coordinates.
+        """
 
     def at(self, clocks: np.ndarray) -> np.ndarray:
-        """The same at clocks within the run.
+        """Return the motion at clocks within the run, shape (m, c), as `flown` does.
 
         Raises
         ------
@@ -106,32 +109,35 @@ class Trajectory(ABC, Generic[ModelOf]):
         return self.flown(places, np.maximum(clocks - self.clocks[places], 0.0))
 
     def coordinates(self, times: np.ndarray) -> np.ndarray:
-        """The simulator's coordinates at times within the run (forcing periods, or time over 2 pi), shape (m, d)."""
+        """Return the simulator's coordinates at times within the run (forcing periods, or time over 2 pi), shape (m, d)."""
         return self.at(TWO_PI * times)[:, : self.points.shape[1]]
 
     @property
     @abstractmethod
     def nodes(self) -> np.ndarray:
-        """What continuation solves for, at every event of a forced machine, shape (m, n)."""
+        """Unknowns of continuation at every event of a forced machine, shape (m, n)."""
 
     @abstractmethod
     def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
-        """Word and nodes of a cycle that events `first` to `last` - 1 are."""
+        """Return word and nodes of the cycle that consists of events `first` to `last` - 1."""
 
     @abstractmethod
     def approaches(self, first: int = 0) -> np.ndarray:
-        """Approach speeds of the impacts from event `first` on, in the machine's own numbers."""
+        """Return the approach speeds of the impacts from event `first` on, in the machine's own units."""
 
     @abstractmethod
     def extremes(self, per_period: int = 0) -> dict[str, float]:
-        """By name how far the motion goes, looked at so often (0: as often as it takes): the measures ``max_...`` and ``min_...`` of a simulation."""
+        """Return the extremes of the motion by name: the measures ``max_...`` and ``min_...`` of a simulation.
+
+        `per_period` is the number of samples per forcing period; 0: as many as are needed.
+        """
 
     @abstractmethod
     def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
-        """Clocks all along the run, and at these what modulations are told by."""
+        """Return clocks along the run, and the response from which modulations are measured at these clocks."""
 
     def shown(self, first: int) -> list[float]:
-        """What a picture shows of the events from `first` on; nothing where it shows the whole motion."""
+        """Return one value for each event from `first` on that a picture plots; empty if it plots the whole motion."""
         return self.approaches(first).tolist()
 
     # ------------------------------------------------------------------ what follows
@@ -145,7 +151,7 @@ class Trajectory(ABC, Generic[ModelOf]):
 
     @cached_property
     def piled(self) -> np.ndarray:
-        """With which events infinitely many impacts end, or a wall lets go, bool array (m,)."""
+        """Events at which infinitely many impacts accumulate or a wall releases the body, bool array (m,)."""
         return (self.kinds == HOLD) | (self.kinds == RELEASE)
 
     @property
@@ -155,17 +161,17 @@ class Trajectory(ABC, Generic[ModelOf]):
 
     @property
     def chatters(self) -> int:
-        """How often infinitely many impacts piled up and a wall held the body."""
+        """How often infinitely many impacts accumulated and a wall held the body."""
         return int(np.count_nonzero(self.kinds == HOLD))
 
     @property
     def times(self) -> np.ndarray:
-        """Of the events, in forcing periods, or time over 2 pi."""
+        """Times of the events, in forcing periods, or time over 2 pi."""
         return self.clocks[1:] / TWO_PI
 
     @property
     def lasted(self) -> float:
-        """The same of the whole run."""
+        """Length of the run, in forcing periods, or time over 2 pi."""
         return float(self.finish - self.clocks[0]) / TWO_PI
 
     @property
@@ -176,12 +182,12 @@ class Trajectory(ABC, Generic[ModelOf]):
 
     @property
     def ended(self) -> str:
-        """Why the run ended, and whether impacts piled up on the way."""
+        """The reason for the end of the run, and how often impacts accumulated."""
         times = "" if self.chatters == 0 else "once" if self.chatters == 1 else f"{self.chatters} times"
         return self.reason + (f"; impacts piled up and a wall held the body {times}" if times else "")
 
     @cached_property
     def labels(self) -> np.ndarray:
-        """A number for each event, the same for events that are alike, int array (m,)."""
+        """One number for each event, the same for equal events, int array (m,)."""
         known: dict[Hashable, int] = {}
         return np.array([known.setdefault(event, len(known)) for event in self.occurrences], dtype=int)

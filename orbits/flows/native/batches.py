@@ -1,4 +1,4 @@
-"""Many motions at once: each is run until its state recurs from one forcing phase to the next."""
+"""Simulate many motions at once: each is run until its state recurs from one forcing phase to the next."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from orbits.machines.stepping import (
 from orbits.settings import SIMULATING
 
 SETTLED, AT_REST, LOST, WANDERING = Outcome.SETTLED, Outcome.AT_REST, Outcome.LOST, Outcome.WANDERING
-GROWTH = 4000  # forcing periods over which the growth of small differences is followed
+GROWTH = 4000  # forcing periods over which the growth of small differences is measured
 
-BLOCKS = 19  # of the periods after the first twentieth
-BLOCK = 512  # motions that one thread takes at a time
-BUFFER = 1024  # events kept between two looks
-WORK = 8000.0  # events and periods of one native call: an interrupt is seen between two calls
+BLOCKS = 19  # blocks of equal length after the first twentieth of the periods
+BLOCK = 512  # motions per task of a thread
+BUFFER = 1024  # events (or periods of growth) per call of the stepper
+WORK = 8000.0  # events and periods of one native call: interrupts take effect between two calls
 RESULTS = ("periods", "impacts", "holds", "gaps", "outcome")
 
 
@@ -45,14 +45,14 @@ class Interrupted(Exception):
 
 
 class Settling(NamedTuple):
-    """How motions are run until they recur.
+    """Settings for running motions until they recur.
 
     Attributes
     ----------
     engine : Stepper
     params : ndarray, shape (P,)
     transient : float
-        Forcing periods before a recurrence is looked for.
+        Forcing periods before the search for a recurrence.
     longest : int
         Forcing periods of the longest recurrence.
     tolerance : float
@@ -71,11 +71,11 @@ class Settling(NamedTuple):
         Parameters
         ----------
         states : ndarray, shape (n, S)
-            Moved along.
+            Changed in place.
         found : dict of ndarray
-            As in `settle_all`, filled.
+            Results as in `settle_all`, changed in place.
         stopped : Event, optional
-            Ends the work with `Interrupted` when it is set.
+            Raises `Interrupted` between two motions once it is set.
         """
         begin, machine = 0, number(self.engine.name)
         while begin < len(states):
@@ -89,7 +89,7 @@ class Settling(NamedTuple):
             begin += 1
 
     def _natively(self, machine: int, begin: int, states: np.ndarray, found: dict[str, np.ndarray]) -> int:
-        """Some motions from number `begin` on; the number of the next one."""
+        """Run some motions from number `begin` on in the native core; return the number of the next one."""
         work = function(
             "simulation_settle", WHOLE, WHOLE, WHOLE, WHOLE, POINTER, POINTER, NUMBER, WHOLE, NUMBER, *[POINTER] * 5, NUMBER
         )  # fmt: skip
@@ -98,7 +98,7 @@ class Settling(NamedTuple):
         return work(machine, begin, len(states), written(states), *how, *results, WORK)
 
     def _one(self, state: np.ndarray, i: int, found: dict[str, np.ndarray]) -> None:
-        """Motion number i in plain Python: the reference of `native/many_starts.hpp`."""
+        """Run motion number i in plain Python: the reference of `native/many_starts.hpp`."""
         engine, params, room = self.engine, self.params, buffers(self.engine, BUFFER)
         if state[TURNS] < 0.5:
             engine.launch(state, params)
@@ -132,7 +132,7 @@ def _follow(
     until: float,
     room: tuple[np.ndarray, np.ndarray, np.ndarray],
 ) -> tuple[int, int, int]:
-    """Run on to a time; the status, impacts and impacts that have piled up."""
+    """Run on to a time; return the status, the number of impacts, and how often impacts accumulated."""
     hits, held, status = 0, 0, EVENTS_FULL
     while status == EVENTS_FULL:
         count, status = engine.advance(state, params, until, *room)
@@ -142,7 +142,10 @@ def _follow(
 
 
 def growth(engine: Stepper, state: np.ndarray, params: np.ndarray, count: int) -> np.ndarray:
-    """Follow a motion and a neighbour between the walls, drawn back to it once a forcing period; growth factors, shape (count,)."""
+    """Return factors by which the distance to a neighbouring motion grows in each forcing period, shape (count,).
+
+    The neighbour stays between the walls and is moved back to its first distance once per period.
+    """
     ratios, other, distance = np.empty(count), state.copy(), SIMULATING.nudge
     left, right = (float(wall) for wall in engine.walls(params))
     machine = number(engine.name)
@@ -168,7 +171,7 @@ def growth(engine: Stepper, state: np.ndarray, params: np.ndarray, count: int) -
             _follow(engine, one, params, until, room)
         apart = other[drawn_back] - state[drawn_back]
         size = math.sqrt(float(apart @ apart))
-        if size == 0.0:  # a stick has lost the difference: give it one again
+        if size == 0.0:  # both motions stick and have become equal: separate them again
             ratios[k] = SIMULATING.lost
             other[RATE] = state[RATE] + distance
         else:
@@ -190,14 +193,14 @@ def settle_all(
     tolerance: float,
     workers: int,
 ) -> dict[str, np.ndarray]:
-    """Run all motions until they recur, for one transient after the other; `states` (n, S) is moved along.
+    """Run all motions until they recur, with one transient after another; `states` (n, S) is changed in place.
 
-    The result of each motion depends on its start alone, so that it is the same for any number of workers.
+    The result of each motion depends on its start alone, so it is the same for any number of workers.
 
     Returns
     -------
     dict of arrays (n,)
-        ``outcome``, ``periods``, ``impacts`` and ``holds`` of one recurrence, ``gaps`` (least distance of a return).
+        ``outcome``; ``periods``, ``impacts`` and ``holds`` of one recurrence; ``gaps``, the smallest difference of a return.
     """
     n = len(states)
     found = {
@@ -230,16 +233,16 @@ def settle_all(
                 try:
                     list(pool.map(run, blocks, [float(transient)] * len(blocks)))
                 except BaseException:
-                    stopped.set()  # else the pool waits until all threads are done
+                    stopped.set()  # otherwise the pool waits for all threads
                     raise
     return found
 
 
 def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = GROWTH) -> tuple[float, float]:
-    """Largest Lyapunov exponent per forcing period and its standard error, from blocks of the growth's logarithms.
+    """Return the largest Lyapunov exponent per forcing period and its standard error, from blocks of logarithms of the growth.
 
-    A neighbour 1e-7 away is drawn back once a period (Benettin et al., Meccanica 15 (1980) 9). The error is that of
-    the mean over 19 blocks, which are long against the memory of the motion.
+    A neighbour at a distance of 1e-7 is moved back once per period (Benettin et al., Meccanica 15 (1980) 9). The error is that of the mean
+    over 19 blocks, which are long compared with the memory of the motion.
     """
     logs = np.log(growth(stepper(name), state.copy(), params, periods))[periods // 20 :]
     return mean_of_blocks(logs[: BLOCKS * (len(logs) // BLOCKS)], BLOCKS)

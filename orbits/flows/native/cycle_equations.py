@@ -1,4 +1,4 @@
-"""The equations of the built-in machines' cycles: what the compiled kernels need, or their reference in plain Python and numpy.
+"""The equations of the built-in machines' cycles: data for the compiled kernels, or for their reference in plain Python and numpy.
 
 The empty word has linear equations of its own (`orbits.flows.native.rest_equations`).
 """
@@ -25,7 +25,7 @@ _shared = lru_cache(maxsize=64)(workspace)
 
 
 class NativeKernels(TableKernels):
-    """Cycles of one model, in the native core. Both cores work on the same data and arrays (`orbits.arguments`)."""
+    """Kernels for the cycles of one model in the native core; the reference uses the same data and arrays (`orbits.arguments`)."""
 
     natural = True
     matrix = staticmethod(jacobian)
@@ -42,12 +42,15 @@ def _assembled(name: str, machine: int | None) -> NativeKernels | ReferenceKerne
 
 
 def assemble(model: Model) -> NativeKernels | ReferenceKernels:
-    """The kernels for `model`, made once per process."""
+    """Return the kernels for `model`, made once per process."""
     return _assembled(model.name, number(model.name))
 
 
 class NativeEquations(Equations[Model]):
-    """Closed chains of elementary maps, against one parameter. Of motions without impacts that are not symmetric the mean position is pinned."""
+    """Closed chains of elementary maps, against one parameter.
+
+    A motion without impacts can be shifted along the cavity: unless it is symmetric, its mean position is pinned.
+    """
 
     def __init__(
         self,
@@ -86,20 +89,20 @@ class NativeEquations(Equations[Model]):
 
     @property
     def kernels(self) -> NativeKernels | ReferenceKernels:
-        """linearise, bordered, inspect, newton, examine of the model."""
+        """The kernels of the model."""
         return assemble(self.model)
 
     def workspace(self) -> Workspace:
-        """Arrays for the kernels."""
+        """Return new arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
     @cached_property
     def scratch(self) -> Workspace:
-        """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
+        """Workspace for single calls, shared by all cycles of one length; its contents do not last."""
         return _shared(self.length, self.model.node, self.params.size)
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
-        """Of the impact at a place; the dependence on the parameter from a difference of size `near`."""
+        """Return the speed of the impact at a place and its derivatives; `near` is the step of the difference quotient by the parameter."""
         n, unit = self.model.node, self.unit[place]
         node, own = (
             u[place * n : (place + 1) * n] * unit,
@@ -117,7 +120,7 @@ class NativeEquations(Equations[Model]):
         )
 
     def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of each flight's equations by the node before it and after it, the mirror in the last."""
+        """Return the derivatives of each flight's equations by the node before it and by the node after it, the mirror included in the last."""
         row = np.empty(2 * self.n_multipliers + self.n_margins)
         self.kernels.examine(self.data, u, p, self.scratch, row)
         A, D = self.scratch.A, self.scratch.D.copy()
@@ -126,7 +129,7 @@ class NativeEquations(Equations[Model]):
 
 
 class _Frame(NamedTuple):
-    """What the equations of all words have in common: numbers and how they follow the parameter, in the machine's units and in its own."""
+    """Data shared by the equations of all words: parameters and how they depend on the varying one, in given and in dimensionless units."""
 
     path: np.ndarray
     units: tuple[float, float]
@@ -138,7 +141,7 @@ class _Frame(NamedTuple):
 
 
 class _Itself:
-    """A machine as a key: machines that are equal as numbers may be given in other quantities."""
+    """Hashable wrapper that compares machines by identity: equal numbers may be given in different quantities."""
 
     __slots__ = ("model",)
 

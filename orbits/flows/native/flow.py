@@ -1,4 +1,4 @@
-"""The flow of the built-in machines: closed forms."""
+"""The flow of the built-in machines, in closed form."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from orbits.settings import EVENTS, GROWING, SIMULATING
 from orbits.words import Word, place_of
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT, Watch
 
-FLIGHT = 0  # column of the margin that watches a flight
-GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
+FLIGHT = 0  # column of the margin that belongs to a flight
+GRID = np.arange(41.0)  # grid points of the bracket that encloses the smallest speed in a flight
 
 
 class NativeFlow(Flow[Model]):
-    """See `orbits.flows.protocol`; a node is (Psi, B+) at an impact, (Psi, w) elsewhere, and what the machine adds."""
+    """See `orbits.flows.protocol.Flow`; a node is (Psi, B+) at an impact and (Psi, w) elsewhere, then v and v' if the cavity is an oscillator."""
 
     angles = measures.ANGLES
     closed_form = True
@@ -36,19 +36,19 @@ class NativeFlow(Flow[Model]):
     measures = staticmethod(measures.measure)
 
     def census(self, model: Model) -> Census:
-        """Many at once, in closed form."""
+        """Return a large census: starts are simulated together in closed form."""
         return Census(across=200, brief=(5, 48), price=1.0, longest=24, embedded=6)
 
     def coordinates(self, model: Model) -> tuple[str, ...]:
-        """Position and velocity in the cavity, and of a machine with an oscillator those of the centre of mass."""
+        """Return the names of position and velocity in the cavity, and of those of the centre of mass if the cavity is an oscillator."""
         return stepper(model.name).coordinates
 
     def position_entries(self, model: Model) -> tuple[int, ...]:
-        """w."""
+        """Return the entry of w."""
         return (1,)
 
     def points(self, motion: Motion[Model]) -> np.ndarray:
-        """w, w' (, v, v')."""
+        """Return w, w' (and v, v') just after the events, shape (L, d)."""
         return self._states(motion)[:, list(stepper(motion.model.name).places)]
 
     def equations(
@@ -61,7 +61,7 @@ class NativeFlow(Flow[Model]):
         symmetric: bool = False,
         units: tuple[float, float] | None = None,
     ) -> Equations:
-        """Those of the absorber at rest are linear."""
+        """Return the equations of the cycles with this word; the empty word (the absorber at rest) has linear ones."""
         if len(word):
             return NativeEquations(model, word, periods, parameter, params, symmetric, units)
         from orbits.flows.native.rest_equations import RestEquations
@@ -69,36 +69,36 @@ class NativeFlow(Flow[Model]):
         return RestEquations(model, parameter, params)
 
     def loose(self, model: Model, word: Word) -> tuple[int, ...]:
-        """The position, where no wall is hit."""
+        """Return the entry of w for a motion that hits no wall."""
         return (1,) if word.impact_free and len(word) else ()
 
     def strobed(self, motion: Motion[Model]) -> np.ndarray:
-        """Nothing to be seen: at rest there are no unknowns."""
+        """Return an empty table: the absorber at rest has no coordinates."""
         return np.zeros((motion.periods + 1, 0))
 
     def measure_names(self, model: Model) -> tuple[str, ...]:
-        """As the machine says."""
+        """Return the names of the machine's measures."""
         return model.measure_names
 
     def default_measure(self, model: Model) -> str:
-        """As the machine says."""
+        """Return the machine's default measure."""
         return model.default_measure
 
     def simulated_names(self, model: Model) -> tuple[str, ...]:
-        """Of the reduced model the squared amplitude of its cavity's motion stands for the oscillator's."""
+        """Return the simulated measures; the reduced model has the squared amplitude of the cavity in place of the oscillator's displacement."""
         speeds = ("max_abs_w", "impact_speed", "impacts_per_period")
         return ("max_abs_q1", *speeds, *BAND, SILENT) if model.moving_cavity else ("C2", *speeds)
 
     def swept(self, model: Model) -> tuple[str, ...]:
-        """As the machine says."""
+        """Return the machine's default measure."""
         return (model.default_measure,)
 
     def in_units(self, model: Model, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
-        """Those of a machine that has some."""
+        """Convert dimensionless measures to the machine's units."""
         return gauged(model, params, values)
 
     def described(self, motion: Motion[Model]) -> dict[str, Any]:
-        """Velocities and positions at the events, in the units that are shown."""
+        """Return velocities and positions at the events, in the units that are shown."""
         model, table = motion.model, events_of(motion)
         long, fast = (float(model.gauge(kind, motion.params)) for kind in ("length", "velocity"))
         nodes = []
@@ -117,30 +117,30 @@ class NativeFlow(Flow[Model]):
         return {"events": "".join(motion.word.events), "nodes": nodes}
 
     def kind(self, motion: Motion[Model]) -> str:
-        """Told by the events."""
+        """Return "periodic" with impacts, "sliding" with other events only, "stuck" without events."""
         return "periodic" if motion.word.impacts else "sliding" if len(motion.word) else "stuck"
 
     def restitution(self, motion: Motion[Model], place: int) -> float:
-        """Newton's coefficient of the wall that is hit."""
+        """Return Newton's coefficient of the wall that is hit."""
         return float(motion.model.restitutions(motion.params)[motion.word.letter(place).contact])
 
     def without_events(self, motion: Motion[Model]) -> None:
-        """That is the absorber at rest, whose border has rules of its own."""
+        """Return None: that motion is the absorber at rest, whose border has its own rules."""
 
     # ------------------------------------------------------------------ between the events
     def _states(self, motion: Motion[Model]) -> np.ndarray:
-        """The stepper's states just after the events, shape (L, S)."""
+        """Return the stepper's states just after the events, shape (L, S)."""
         word, engine = motion.word, stepper(motion.model.name)
         return engine.states_of(motion.params, word.codes, word.mode_codes, motion.nodes)
 
     def flown(self, motion: Motion[Model], places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-        """w, w', v, v', shape (m, 4)."""
+        """Return w, w', v, v' at clocks `ahead` after the events `places`, shape (m, 4)."""
         out = np.empty((len(ahead), 4))
         stepper(motion.model.name).sample(self._states(motion)[places], motion.params, ahead, out)
         return out
 
     def columns(self, motion: Motion[Model], table: np.ndarray) -> dict[str, np.ndarray]:
-        """The absolute positions ``cavity`` (q1) and ``absorber`` (q2) as well, in units of b."""
+        """Return the coordinates and the absolute positions ``cavity`` (q1) and ``absorber`` (q2), in units of b."""
         w, w_rate, v, v_rate = table.T
         cavity, absorber = motion.model.bodies(w, v, motion.params)
         return {
@@ -153,7 +153,7 @@ class NativeFlow(Flow[Model]):
         }
 
     def sample(self, motion: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
-        """Of the absorber at rest, which rides with its cavity, at equal phases."""
+        """Sample one period; the absorber at rest, which moves with its cavity, at equal phases."""
         if len(motion.word):
             return super().sample(motion, points)
         phase = np.linspace(0.0, 2.0 * np.pi, points)
@@ -168,7 +168,7 @@ class NativeFlow(Flow[Model]):
         }
 
     def positions(self, motion: Motion[Model], instants: int) -> np.ndarray:
-        """w; in the native core, if there is one."""
+        """Return w at equal phases, shape (periods * instants, 1), computed in the native core if there is one."""
         machine, count = number(motion.model.name), instants * motion.periods
         if not len(motion.nodes):
             return np.zeros((count, 1))
@@ -185,12 +185,12 @@ class NativeFlow(Flow[Model]):
         return w
 
     def _flight(self, motion: Motion[Model], place: int, ahead: np.ndarray) -> np.ndarray:
-        """w, w', v, v' so long after event `place`, shape (m, 4)."""
+        """Return w, w', v, v' at clocks `ahead` after event `place`, shape (m, 4)."""
         return self.flown(motion, np.full(len(ahead), place), ahead)
 
     # ------------------------------------------------------------------ at borders
     def vanishing(self, motion: Motion[Model], index: int, unit: int) -> Vanishing | None:
-        """What vanishes with margin `index` of a border orbit, over its whole cycle."""
+        """Return the event that vanishes with margin `index` of a border orbit, over its whole cycle; None if no word follows."""
         word = motion.word
         place, watched = place_of(word, index)
         in_flight = index % len(word.alphabet.columns) == FLIGHT
@@ -210,19 +210,19 @@ class NativeFlow(Flow[Model]):
             return Vanishing(site._replace(place=at, at=at), self._nearer(motion, motion.nodes[at, 1]))
         if (
             word.modes[place] == STUCK
-        ):  # the time to the slip jumps where the reserve of friction vanishes in the stick
+        ):  # the reserve of friction vanishes inside the stick, so the time of the slip jumps
             return Vanishing(site, Watch.STRENGTH)
         return Vanishing(site, FLOOR, self._slowest(motion, place))
 
     def _soft(self, motion: Motion[Model], place: int) -> int | None:
-        """The event at either end of a flight that is an impact of vanishing speed."""
+        """Return the event at either end of a flight that is an impact of vanishing speed, or None."""
         places = (place, (place + 1) % len(motion.word))
         speed = EVENTS.touch * math.prod(motion.model.natural_units(motion.params))
         rates = events_of(motion).rate_post
         return next((k for k in places if abs(rates[k]) < speed), None)
 
     def _touching(self, motion: Motion[Model], site: Site, ahead: np.ndarray) -> Vanishing | None:
-        """Where a flight that reverses freely is closest to a wall."""
+        """Return the touch at the reversal of a frictionless flight that comes closest to a wall; None if the flight does not reverse."""
         path = self._flight(motion, site.place, ahead)
         inner = np.flatnonzero(np.diff(np.sign(path[:, 1])) != 0)
         if not inner.size:
@@ -233,7 +233,7 @@ class NativeFlow(Flow[Model]):
         return Vanishing(site, wall, self._touch(motion, float(ahead[touch]), path[touch]))
 
     def _slowest(self, motion: Motion[Model], place: int) -> tuple[float, np.ndarray]:
-        """Where s w' is smallest inside a flight."""
+        """Return clock and node entries of the point in a flight at which the speed of sliding (mode times w') is smallest."""
         mode = float(motion.word.mode_codes[place])
         ahead = np.linspace(0.0, float(motion.durations[place]), 402)[1:-1]
         speed = mode * self._flight(motion, place, ahead)[:, 1]
@@ -248,20 +248,20 @@ class NativeFlow(Flow[Model]):
         return self._touch(motion, where, self._flight(motion, place, np.array([where]))[0])
 
     def _touch(self, motion: Motion[Model], ahead: float, here: np.ndarray) -> tuple[float, np.ndarray]:
-        """A place in a flight as the node of an event off the walls has it: w (, v, v')."""
+        """Return clock and node entries, w (, v, v'), of a point in a flight, like a node away from the walls."""
         return ahead, here[[0, 2, 3]][: motion.nodes.shape[1] - 1]
 
     def _nearer(self, motion: Motion[Model], w: float) -> int:
-        """The nearer wall."""
+        """Return the wall nearer to w."""
         left, right = motion.model.walls(motion.params)
         return LEFT if left - w < w - right else RIGHT
 
     def placed(self, motion: Motion[Model], found: Vanishing, place: int, change: Change) -> np.ndarray:
-        """Where impacts are among them the second entry is B+, else w."""
+        """Return the nodes of the new events; their second entry is B+ for impacts and w for others."""
         model, word, letters = motion.model, motion.word, motion.word.alphabet.letters
         rows = super().placed(motion, found, place, change)
         length, rate = model.natural_units(motion.params)
-        hit_before = 0  # side of a new impact among the events so far
+        hit_before = 0  # side of the new impact just before: 1 left, -1 right, 0 none
         for row, text, spot in zip(rows, change.events, change.spots):
             hit = letters[text].kind == HIT
             side = (1 if letters[text].contact == LEFT else -1) if hit else 0

@@ -1,9 +1,9 @@
-"""Measures of orbits: velocities at the impacts, losses per period, and what each machine adds of its own.
+"""Measures of orbits of the built-in machines: velocities at impacts, losses per period, and measures of single machines.
 
-Everything is computed for many solutions at once: nodes have shape (m, L, n), parameter vectors (m, P), results (m,).
-Energies are in units of m b^2 omega_0^2 (m the absorber's mass) per period of the orbit, which has k periods of the
-forcing: a doubled orbit loses twice as much in it. Those that end in ``_mean`` are per forcing period, so that orbits of
-different periods compare (and branches of doubled orbits begin where they leave).
+All measures are computed for many solutions at once: nodes have shape (m, L, n), parameter vectors (m, P), results (m,).
+Energies are in units of m b^2 omega_0^2 (m: mass of the absorber) per period of the orbit, which has k forcing periods: a doubled orbit
+loses twice as much in its period. Names that end in ``_mean`` are per forcing period, so that orbits of different periods can be
+compared, and a branch of doubled orbits begins at the value of its parent.
 """
 
 from __future__ import annotations
@@ -28,33 +28,39 @@ from orbits.words.alphabet import CODES
 def measure(
     model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
-    """`dimensionless`, in the units of a machine that has some."""
+    """Return measures by name, in the machine's units; see `dimensionless`."""
     return gauged(model, params, dimensionless(model, word, periods, nodes, params, wanted))
 
 
 def gauged(model: Model, params: np.ndarray, values: dict[str, Any]) -> dict[str, Any]:
-    """Dimensionless measures by name, in the machine's units; params (..., P), measures (...)."""
+    """Convert dimensionless measures by name to the machine's units; params (..., P), measures (...)."""
     return {name: value * model.gauge(KINDS.get(name, ""), params) for name, value in values.items()}
 
 
 def dimensionless(
     model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
-    """The measures `wanted` of many orbits with one word, in the machine's own numbers.
+    """Return the measures `wanted` of many orbits with one word, in the machine's dimensionless units.
 
-    ``B_post`` and ``B_pre`` are the absorber's absolute velocities after and before the first impact, each counted positive
-    in its own usual direction (away from the wall, towards it), ``B`` is their mean (Youssef, Karoui, Leine: B = (B+ +
-    B-)/2) and ``B_mean`` the mean of B over all impacts. ``C2`` is the squared amplitude of v, ``phase`` the
-    forcing phase of the first event. ``impact_speed`` is the fastest approach. ``impact_loss`` is the kinetic energy of
-    the relative motion lost at impacts, sum of (1 - r^2) w'-^2 / (2 (1 + eps)), ``friction_loss`` is mu g times the
-    path slid; both over the orbit's period, ``impact_loss_mean`` and ``friction_loss_mean`` per forcing period.
+    Velocities and energies:
 
-    Loads, in units of m, b and omega_0: ``impact_rate`` is the number of impacts per unit of time; ``impulse`` the largest
-    impulse of an impact, (1 + r) |w'-| / (1 + eps), ``impulse_left`` and ``impulse_right`` the largest at that wall (0 where
-    there is no impact); ``impact_energy`` the kinetic energy of the relative motion before the hardest impact,
-    w'-^2 / (2 (1 + eps)); ``mean_force`` the sum of all impulses over the period's time, the mean of the force's size;
-    ``work_rate`` what impacts and friction take per unit of time; ``peak_force`` of the hardest impact, if its force is half a sine
-    over the machine's contact time T: impulse = integral of F sin(pi t / T) = 2 F T / pi.
+    - ``B_post``, ``B_pre``: absolute velocity of the absorber (times 1 + eps) after and before the first impact, each positive in its usual
+      direction (away from the wall, towards it); ``B`` is their mean (Youssef, Karoui, Leine: B = (B+ + B-)/2), ``B_mean`` the mean of B
+      over all impacts.
+    - ``C2``: squared amplitude of v. ``phase``: forcing phase of the first event. ``impact_speed``: fastest approach.
+    - ``impact_loss``: kinetic energy of the relative motion lost at impacts, sum of (1 - r^2) w'-^2 / (2 (1 + eps)); ``friction_loss``:
+      mu g times the sliding distance; both per period of the orbit, ``impact_loss_mean`` and ``friction_loss_mean`` per forcing period.
+
+    Loads, in units of m, b and omega_0:
+
+    - ``impact_rate``: impacts per unit of time.
+    - ``impulse``: largest impulse of an impact, (1 + r) |w'-| / (1 + eps); ``impulse_left``, ``impulse_right``: largest at that wall (0
+      without impacts there).
+    - ``impact_energy``: kinetic energy of the relative motion before the hardest impact, w'-^2 / (2 (1 + eps)).
+    - ``mean_force``: sum of all impulses over the period, the mean size of the contact force.
+    - ``work_rate``: power lost in impacts and friction.
+    - ``peak_force``: of the hardest impact, for a force of half a sine over the machine's contact time T: impulse = integral of
+      F sin(pi t / T) = 2 F T / pi.
 
     Raises
     ------
@@ -119,8 +125,8 @@ def dimensionless(
 
 
 def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
-    """A measure of the absorber at rest; velocities at impacts are not a number."""
-    name = MEANS.get(name, name)  # its period is the forcing's
+    """Return a measure of the absorber at rest; velocities at impacts are NaN."""
+    name = MEANS.get(name, name)  # the period of rest is one forcing period
     if name in (*WITHOUT_IMPACTS, "friction_loss", "max_abs_w"):
         return np.zeros(len(params))
     rest = model.rest
@@ -133,15 +139,17 @@ POWERS = ("input_work", "damping_loss", "force_work", "grounded_damping_loss")
 def own_measures(
     wanted: Sequence[str], model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """The measures `wanted` of many orbits with one word; nodes (m, L, 4), params (m, 8), results (m,).
+    """Return measures of machines with an oscillator, for many orbits with one word; nodes (m, L, 4), params (m, 8), results (m,).
 
-    ``max_abs_q1`` is the largest displacement of the oscillator in units of b (exact, at an extremum), ``amplitude`` and
-    ``v_phase`` those of the first harmonic C sin(Psi + phase) of v, ``C2`` the squared amplitude. Over the orbit's
-    period, in units of m b^2 omega_0^2 like ``impact_loss`` and ``friction_loss``: ``damping_loss`` is what the damper between
-    base and oscillator takes, the integral of eps lambda (q1' - e')^2, and ``input_work`` what the moving base gives through
-    spring and damper; the four balance. For the same motion driven by the force e + eps lambda e', its damper held to the
-    ground, ``force_work`` is the work of that force on q1 and ``grounded_damping_loss`` the integral of eps lambda q1'^2;
-    they balance with the other two as well. With the truncated excitation the machine is that one, and both pairs are one.
+    - ``max_abs_q1``: largest displacement of the oscillator in units of b, exact at an extremum.
+    - ``amplitude``, ``v_phase``: of the first harmonic C sin(Psi + phase) of v; ``C2`` is the squared amplitude.
+    - ``damping_loss``: energy lost in the damper between base and oscillator, the integral of eps lambda (q1' - e')^2; ``input_work``: work of
+      the moving base through spring and damper. Together with ``impact_loss`` and ``friction_loss`` they balance.
+    - ``force_work``, ``grounded_damping_loss``: for the same motion driven by the force e + eps lambda e' with the damper fixed to the
+      ground, the work of this force on q1 and the integral of eps lambda q1'^2. They balance with the two losses as well. With the
+      truncated excitation the machine is of this kind, and both pairs are equal.
+
+    All energies are per period of the orbit, in units of m b^2 omega_0^2.
     """
     table = event_table(model, word, nodes, params)
     modes = np.array(word.modes, dtype=float)
@@ -187,19 +195,19 @@ def own_measures(
     return result
 
 
-LEFT_IMPACT, RIGHT_IMPACT = CODES["L"], CODES["R"]  # 0 and 1, before all others
+LEFT_IMPACT, RIGHT_IMPACT = CODES["L"], CODES["R"]  # 0 and 1, smaller than all other codes
 
 
 @dataclass(frozen=True)
 class EventTable:
-    """What happens at each event; all arrays have shape (m, L).
+    """Positions and velocities at each event; all arrays have shape (m, L).
 
     Attributes
     ----------
     phase : float array
         Psi, radians from the start of the forcing.
     w, rate_post, rate_pre : float array
-        Relative position, relative velocity after and before the event.
+        Relative position; relative velocity after and before the event.
     B_post, B_pre : float array
         Absolute velocity of the absorber times 1 + eps, v' - w', after and before the event.
     v, v_rate : float array
@@ -217,7 +225,7 @@ class EventTable:
 
 
 def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray) -> EventTable:
-    """Positions and velocities at all events, from nodes (m, L, n) and parameter vectors (m, P)."""
+    """Return positions and velocities at all events, from nodes (m, L, n) and parameter vectors (m, P)."""
     phase = nodes[:, :, 0]
     v, v_rate = model.cavity_motion(nodes, params)
     hits, walls, r = contacts(model, word, params)
@@ -228,7 +236,7 @@ def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray)
 
 
 def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Which events are impacts, shape (L,), and their walls' places and coefficients of restitution, shape (m, L)."""
+    """Return which events are impacts, shape (L,), and the places and restitutions of their walls, shape (m, L)."""
     codes = word.codes
     left, hits = codes == LEFT_IMPACT, codes <= RIGHT_IMPACT
     (at_left, at_right), (by_left, by_right) = model.walls(params), model.restitutions(params)
@@ -250,12 +258,12 @@ class Placed(Protocol):
 
 
 def events_of(motion: Placed) -> EventTable:
-    """What happens at the events of one motion (its model, word, nodes and params); arrays of shape (L,).
+    """Return positions and velocities at the events of one motion; arrays of shape (L,).
 
     Raises
     ------
     AttributeError
-        If it is one of a declared machine.
+        If the motion belongs to a declared machine.
     """
     model = motion.model
     if not isinstance(model, Model):

@@ -1,4 +1,4 @@
-"""The equations of the empty word: the absorber at rest, linear equations with one margin (`orbits.machines.rest`)."""
+"""The equations of the empty word: the absorber at rest, with linear equations and one margin (`orbits.machines.rest`)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class RestEquations(Equations[Model]):
-    """The unknowns are those of the machine's `rest`; there are no nodes, no flights and no impacts."""
+    """Equations of the absorber at rest; the unknowns are those of the machine's `rest`: no nodes, flights or impacts."""
 
     length, n_margins = 0, 1
     twist, shift = 1.0, 2.0 * np.pi
@@ -34,52 +34,52 @@ class RestEquations(Equations[Model]):
 
     @property
     def kernels(self) -> RestKernels:
-        """In plain Python: there are three equations."""
+        """Kernels in plain Python: there are only three equations."""
         return KERNELS
 
     def workspace(self) -> RestWork:
-        """Residual, Jacobian and derivative with respect to the parameter."""
+        """Return arrays for residual, Jacobian and derivative by the parameter."""
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
     def through_flights(self, u: np.ndarray, p: float) -> None:
-        """None."""
+        """Return None: there are no flights."""
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
-        """No nodes."""
+        """Return an array without nodes."""
         return np.zeros((*np.shape(u)[:-1], 0, self.model.node))
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
-        """The unknowns, which follow from the parameters alone."""
+        """Return the unknowns, which follow from the parameters alone."""
         return self.model.rest.solved(self.params)
 
 
 class RestKernels(PlainKernels[RestEquations, RestWork]):
-    """What a continuation, a locus of its border, and Newton's method call."""
+    """Kernels for a continuation, for a locus of the border, and for Newton's method."""
 
     column = 2
-    flip = None  # the unknowns hold no perturbations that could change sign
+    flip = None  # a rest has no perturbations over a period that could change sign
     matrix = None
     assign = staticmethod(assign)
 
     def linearise(self, data: RestEquations, u: np.ndarray, p: float, work: RestWork) -> float:
-        """F = K u - f, its Jacobian K, and its derivative by the parameter from central differences."""
+        """Write F = K u - f, its Jacobian K and its derivative by the parameter (central differences) into `work`."""
         F, J, Q = work
         K, f = data.model.rest.equations(data.values(p))
         J[:] = K
         F[:] = K @ u - f
-        h = SOLVING.shift * (abs(p) or 1.0)  # whatever the unit of p
+        h = SOLVING.shift * (abs(p) or 1.0)  # relative to p, whatever its unit
         ahead, f_ahead = data.model.rest.equations(data.values(p + h))
         behind, f_behind = data.model.rest.equations(data.values(p - h))
         Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)
         return float(np.abs(F).max())
 
     def fill(self, data: RestEquations, work: RestWork, matrix: np.ndarray) -> None:
-        """K."""
+        """Write K into `matrix`."""
         matrix[:] = work[1]
 
     def inspect(self, data: RestEquations, u: np.ndarray, p: float, work: RestWork, row: np.ndarray) -> None:
-        """Multipliers of the forcing period, and the reserve of friction."""
+        """Write the multipliers of the forcing period and the reserve of friction into `row`."""
         params = data.values(p)
         spectrum = data.model.rest.multipliers(params)
         row[: 2 * spectrum.size].view(np.complex128)[:] = spectrum
@@ -87,7 +87,7 @@ class RestKernels(PlainKernels[RestEquations, RestWork]):
 
     @staticmethod
     def transpose(data: RestEquations, work: RestWork, column: np.ndarray, other: RestWork) -> None:
-        """The transposed Jacobian, with another last column, into another workspace."""
+        """Write the transposed Jacobian, with another last column, into another workspace."""
         other[1][:], other[2][:] = work[1].T, column
 
 
