@@ -174,7 +174,7 @@ REFUSED = {
         settings={"step_rule": cv.StepRule(lambda *numbers: -2.0, "far")},
     ),
     "journal = 'line.vines' has no method 'recall'": lambda: diagram(journal="line.vines"),
-    "wants the label of a special point as text, for example 'EP1', the label of": lambda: cv.switch(
+    "needs the label of a special point as text, for example 'EP1', the label of": lambda: cv.switch(
         line(), line()["EP1"]
     ),
     "B1 has no measure 'speed'; choose one of norm, p": lambda: line().plot(y="speed"),
@@ -198,9 +198,9 @@ REFUSED = {
     "kind mine: its classify returns ('odd', 1.0) at p = ": lambda: with_kind(
         kind(test=half, classify=lambda point: ("odd", 1.0))
     ),
-    "kind mine: locus = 'fold' is no function": lambda: kind(locus="fold"),
+    "kind mine: locus = 'fold' must be a function": lambda: kind(locus="fold"),
     "kind mine: marker = 'zz'": lambda: kind(marker="zz"),
-    "kinds is a Kind; a list is asked for": lambda: diagram(kinds=kind()),
+    "kinds is a Kind; expected a list": lambda: diagram(kinds=kind()),
     "no condition to follow": without_condition,
     # two parameters
     "over = 'amplitude' is the parameter of the diagram itself": lambda: cv.locus(
@@ -265,7 +265,7 @@ REFUSED = {
     "there is no parameter 'c'; the problem has a, b": lambda: cv.AlgebraicProblem(
         straight_product, [0.25], {"a": 0.5, "b": 0.5}, parameter="c"
     ),
-    "Mute does not say its": lambda: cv.diagram(Mute(), within=(0.0, 1.0)),
+    "Mute lacks": lambda: cv.diagram(Mute(), within=(0.0, 1.0)),
     "gravity cannot vary: a OneParameter has the one parameter 'p'": lambda: OneParameter().against(
         "gravity"
     ),

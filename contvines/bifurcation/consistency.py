@@ -40,7 +40,7 @@ PASSED_AT = (
     ("neimark-sacker", "hopf"),
 )
 ROUNDING = 32.0 * EPSILON  # assumed relative error of the entries of F_u and F_p
-KNOWN = 10.0  # assumed error of the other multipliers at a special point, in units of the critical one's distance from the circle
+SPECTRUM_ERROR = 10.0  # assumed error of the other multipliers at a special point, in units of the critical one's distance from the circle
 
 
 def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
@@ -76,15 +76,15 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
         # det(F_u) keeps its sign if a multiplier passes through infinity, as where an event of a virtual orbit grazes
         short = segment.length <= 2.0 * engine.settings.resolution
         return not (minus == -plus and pairs == 0 and (short or segment.through_infinity()))
-    known = [sum(e.kind in kinds for e in found) for kinds in PASSED_AT]
-    known[0] += sum(e.astray for e in found)
-    missing = any(abs(change) > number for change, number in zip((plus, minus, pairs), known))
+    explained = [sum(e.kind in kinds for e in found) for kinds in PASSED_AT]
+    explained[0] += sum(e.astray for e in found)
+    missing = any(abs(change) > number for change, number in zip((plus, minus, pairs), explained))
     if not (missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)):
         return False
     # two multipliers that have crossed +1 may meet as a pair and be past -1 at the end
-    odd = all(change % 2 == number % 2 for change, number in zip((plus, minus), known))
-    told = bool(found) and all(_others_outside(engine, event) is not None for event in found)
-    return not (engine.adaptive and odd and told and not _unseen_between(segment, found))
+    odd = all(change % 2 == number % 2 for change, number in zip((plus, minus), explained))
+    all_counted = bool(found) and all(_others_outside(engine, event) is not None for event in found)
+    return not (engine.adaptive and odd and all_counted and not _unseen_between(segment, found))
 
 
 def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
@@ -138,7 +138,7 @@ def _others_outside(engine: Engine, event: Located) -> tuple[range, int, bool] |
         gaps[spectrum.imag == 0.0] = np.inf
     order = np.argsort(gaps)
     sizes, reached = np.abs(spectrum[order[own:]]), float(gaps[order[0]])
-    within = max(KNOWN * reached, LOCATING.past)
+    within = max(SPECTRUM_ERROR * reached, LOCATING.past)
     certain, possible = (int(np.count_nonzero(sizes > 1.0 + side)) for side in (within, -within))
     return range(certain, possible + 1), own, reached <= engine.settings.critical
 

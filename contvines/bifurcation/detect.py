@@ -22,11 +22,11 @@ from .segment_search import SegmentSearch
 from .settings import LOCATING
 
 # the segment next to a branch point, whose beginning is not searched because solutions there are nearly singular:
-BESIDE = 0.02  # part of it that is not searched
-MOST = 0.5  # largest part that is not searched
-NEARER = 0.25  # factor by which this part shrinks if the evidence at its end shows a special point on it
+UNSEARCHED = 0.02  # part of it that is not searched
+LARGEST_UNSEARCHED = 0.5  # largest part that is not searched
+SHRINKING = 0.25  # factor by which this part shrinks if the evidence at its end shows a special point on it
 
-NEXT = 0.1  # a step lands next to a meeting if it ends at less than this part of its first distance from the fixed space
+LANDS = 0.1  # a step lands next to a meeting if it ends at less than this part of its first distance from the fixed space
 
 
 POSITION = attrgetter("position")
@@ -66,24 +66,24 @@ class Detector(SegmentSearch):
         meets, lands = self._meetings_and_landings(wide, scanned)
         if scanned.quiet and not (self.own or meets.any() or lands.any()):
             return []
-        lengths, seen = scanned.lengths, evidence(engine, wide, self.own, scanned)
-        sides, outside = filled(seen.sides), seen.outside
+        lengths, observed = scanned.lengths, evidence(engine, wide, self.own, scanned)
+        sides, outside = filled(observed.sides), observed.outside
         borders = (outside[1:] != outside[:-1]) & (outside[1:] == real)
-        told = (sides[1:] != sides[:-1]).any(axis=1) | borders | meets
-        columns, inside = suspicious(seen, scanned)
-        smallest = seen.first_margin - 1
-        inside[:, smallest] = False if real else may_be_real(seen, lengths)
+        differs = (sides[1:] != sides[:-1]).any(axis=1) | borders | meets
+        columns, inside = suspicious(observed, scanned)
+        smallest = observed.first_margin - 1
+        inside[:, smallest] = False if real else may_be_real(observed, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
         inside[meets] = (
             False  # a branch that returns to a symmetry's fixed space is marginal there; it is not split
         )
         apart = (scanned.reached > 0.0) & (not many) & ~meets
         sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meets
-        open_ = told | sharp | apart | inside.any(axis=1)
+        searched = differs | sharp | apart | inside.any(axis=1)
         movable = lands[extra:] if chunk.status == Status.RUNNING else lands[extra:-1]
         landed = int(movable.argmax()) if movable.any() else None
         events: list[Located] = []
-        for i in np.flatnonzero(open_[extra:][:landed]).tolist():
+        for i in np.flatnonzero(searched[extra:][:landed]).tolist():
             k = i + extra
             one, other = (chunk.solved(i + j, float(sides[k + j, 1])) for j in (0, 1))
             segment = Segment(engine, one, other)
@@ -94,7 +94,7 @@ class Detector(SegmentSearch):
                 found = self._closely(segment, real)
             elif split is not None:
                 found = [*self.both(segment, *split, real), Located(*split, role=Role.PLAIN)]
-            elif told[k]:
+            elif differs[k]:
                 found = self.search(segment, real)
                 border = next((e for e in found if e.role is Role.BORDER), None)
                 split = self.before_border(segment, border) if real and border else None
@@ -142,24 +142,24 @@ class Detector(SegmentSearch):
         end shows a special point on it.
         """
         whole, settings = Segment(self.engine, origin, first), self.engine.settings
-        share = BESIDE
+        share = UNSEARCHED
         if whole.length > 0.0:
-            share = min(max(BESIDE, settings.close / whole.length), MOST)
-        start = seen = whole.at(share)
+            share = min(max(UNSEARCHED, settings.close / whole.length), LARGEST_UNSEARCHED)
+        start = first_start = whole.at(share)
         beyond = share
         while start is not None and share * whole.length > settings.resolution:
             if not self._told(origin, start) or not self._hides(origin, start):
                 break
-            closer = whole.at(NEARER * share)
+            closer = whole.at(SHRINKING * share)
             if closer is None:
                 break
-            share, start = NEARER * share, closer
-        if start is None or seen is None:
+            share, start = SHRINKING * share, closer
+        if start is None or first_start is None:
             return []
         segment = Segment(self.engine, start, first)
         split = self.alone(segment, real)
         if share < beyond:
-            split = (beyond - share) / (1.0 - share), seen
+            split = (beyond - share) / (1.0 - share), first_start
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)
         found, leaping = self._certain(segment, found)
         # at the branch point itself the parameter is stationary: on a flat branch rounding imitates folds and branch points next to it
@@ -227,7 +227,7 @@ class Detector(SegmentSearch):
                 pair = slice(i, i + 2)
                 parts = test.part(chunk.points[pair], chunk.values[pair])
                 meets[i] = turns_round(test, parts, np.inf, float(chunk.corrections[pair].max()))
-            lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < NEXT * size[:-1])
+            lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < LANDS * size[:-1])
         return meets, lands
 
     def _closely(self, segment: Segment, real: bool) -> list[Located]:

@@ -88,15 +88,15 @@ def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan |
 
 def filled(sides: np.ndarray) -> np.ndarray:
     """Replace each 0 in `sides`, shape (n, k), by the last nonzero side before it; at the beginning, by the first nonzero side."""
-    known = sides != 0
-    if known.all():
+    nonzero = sides != 0
+    if nonzero.all():
         return sides
-    places = np.where(known, np.arange(len(sides))[:, None], -1)
+    places = np.where(nonzero, np.arange(len(sides))[:, None], -1)
     last = np.maximum.accumulate(places, axis=0)
-    return np.take_along_axis(sides, np.where(last < 0, known.argmax(axis=0), last), axis=0)
+    return np.take_along_axis(sides, np.where(last < 0, nonzero.argmax(axis=0), last), axis=0)
 
 
-def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
+def suspicious(observed: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
     """Find the segments on which a distance may dip to zero: the parabola through three neighbouring values of one sign crosses zero.
 
     Returns
@@ -106,11 +106,11 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
     found : ndarray of bool, shape (n - 1, j)
         Whether the distance may dip to zero on the segment.
     """
-    first, lengths, low = seen.first_margin, scan.lengths, np.flatnonzero(scan.low)
+    first, lengths, low = observed.first_margin, scan.lengths, np.flatnonzero(scan.low)
     columns = np.append(np.arange(first), first + low)
     found = np.zeros((len(lengths), len(columns)), dtype=bool)
     if len(lengths) > 1:
-        values = np.hstack([seen.distances, seen.margins[:, low] - MARGIN])
+        values = np.hstack([observed.distances, observed.margins[:, low] - MARGIN])
         left, middle, right = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
         dips = parabola_dips(left, middle, right, lengths[:-1, None], lengths[1:, None])
         found[:-1] |= dips
@@ -148,18 +148,18 @@ def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np
     return (signs[:-1] == signs[1:]) & inside
 
 
-def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
+def may_be_real(observed: Evidence, lengths: np.ndarray) -> np.ndarray:
     """Find the segments of a virtual branch that may be real inside although both ends are virtual, shape (n - 1,); a single segment always may.
 
     A margin that is negative at both ends can be positive between only where two straight lines are positive: through the two points before the
     segment and through the two points behind it. The margin lies below these lines if it bends downwards, or is shaped like a roof (the
     reserve of friction).
     """
-    margins, lengths = seen.margins - MARGIN, lengths[:, None]
-    kept = (margins[:-1] < 0.0) & (margins[1:] < 0.0)
+    margins, lengths = observed.margins - MARGIN, lengths[:, None]
+    negative = (margins[:-1] < 0.0) & (margins[1:] < 0.0)
     rises, falls = (
-        np.full(kept.shape, np.inf),
-        np.full(kept.shape, -np.inf),
+        np.full(negative.shape, np.inf),
+        np.full(negative.shape, -np.inf),
     )  # the interval of the segment in which both lines are positive
     if len(lengths) > 1:
         rises[0], falls[-1] = 0.0, lengths[-1]
@@ -167,8 +167,8 @@ def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
             slopes, inner = np.diff(margins, axis=0) / lengths, margins[1:-1]
             rises[1:] = np.where(slopes[:-1] > 0.0, -inner / slopes[:-1], np.inf)
             falls[:-1] = np.where(slopes[1:] < 0.0, lengths[:-1] - inner / slopes[1:], -np.inf)
-    may = (rises < falls) & (rises < lengths) & (falls > 0.0)
-    return seen.outside[:-1] & seen.outside[1:] & (may | ~kept).all(axis=1)
+    possible = (rises < falls) & (rises < lengths) & (falls > 0.0)
+    return observed.outside[:-1] & observed.outside[1:] & (possible | ~negative).all(axis=1)
 
 
 # ------------------------------------------------------------------ kinks

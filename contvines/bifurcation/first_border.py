@@ -24,19 +24,19 @@ from .settings import LIMITS
 
 # error of a border's parameter value
 MARGIN_ROUNDING = 2.0 * EPSILON  # rounding of margins, in units of the machine's size
-BENT = 0.1  # position of the sample that gives the curvature of a margin, relative to the point close before the border
-NEARER = 0.05, 0.03, 0.02, 0.01, 0.005  # positions of the samples that show the scatter of a margin
-TOLD = 10.0  # a difference of margins is more than rounding from this many MARGIN_ROUNDING on
-SEEN = 10.0  # safety factor of an error estimated from a few samples
+BEND_AT = 0.1  # position of the sample that gives the curvature of a margin, relative to the point close before the border
+SCATTER_AT = 0.05, 0.03, 0.02, 0.01, 0.005  # positions of the samples that show the scatter of a margin
+SIGNIFICANT = 10.0  # a difference of margins is more than rounding from this many MARGIN_ROUNDING on
+SAFETY = 10.0  # safety factor of an error estimated from a few samples
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # rank of the kinds of borders that are met at once
 
 # limits of tangent and multipliers
-BEYOND = 4.0  # growth is unbounded if the value at the border exceeds this many times the one expected at the nearest sample
+UNBOUNDED = 4.0  # growth is unbounded if the value at the border exceeds this many times the one expected at the nearest sample
 SPREAD = 4.0  # factor by which margins must differ at least, where their products with growing coefficients are compared
 VANISHES = 0.1  # the extrapolated margin must be below this part of its nearest sample; else rounding has stopped its fall
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # weights of values at PLACES in the cubic's value at 0
 PLACES = np.array([1.0, 2.0, 3.0, 4.0])  # distances of the samples from the border, in units of the spacing
-STRAYING = 0.5  # largest error of a point before a short segment, relative to its distance from the segment
+LARGEST_MISS = 0.5  # largest error of a point before a short segment, relative to its distance from it
 GROWN = 2.0  # a multiplier grows without bound if it is this many times the one at four times the distance
 POLES = 2  # largest number of multipliers that grow without bound
 CONVERGED = (LIMITS.smooth, *[LIMITS.growing] * POLES)  # tolerances, by number of growing multipliers
@@ -130,7 +130,7 @@ def _rounding(segment: Segment, root: Root, index: int, before: Solved | None) -
     first, place, point = 2 * segment.engine.m, root.position, root.point
     margins = point.row[first:]
     sloped = segment.engine.settings.close  # distance at which a margin's slope can be measured
-    flat = np.abs(margins) < TOLD * MARGIN_ROUNDING
+    flat = np.abs(margins) < SIGNIFICANT * MARGIN_ROUNDING
     flat[index] = True
     flat = flat.nonzero()[0]
     here, error = _finite(margins[flat]), 0.0
@@ -142,10 +142,10 @@ def _rounding(segment: Segment, root: Root, index: int, before: Solved | None) -
         error = _scatter(segment, root, index, towards * reach, aside)
     while reach > 0.0 and (aside := aside or segment.at(place + towards * reach)) is not None:
         rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - point.p)
-        told = rises > TOLD * MARGIN_ROUNDING
-        if told.any():
-            error = max(error, moved * MARGIN_ROUNDING / float(rises[told].min()))
-            flat, here = flat[~told], here[~told]
+        significant = rises > SIGNIFICANT * MARGIN_ROUNDING
+        if significant.any():
+            error = max(error, moved * MARGIN_ROUNDING / float(rises[significant].min()))
+            flat, here = flat[~significant], here[~significant]
         if not len(flat):
             break
         if reach == room:
@@ -162,16 +162,16 @@ def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solv
     a smooth margin lies. Returns 0 if the margin jumps at the border.
     """
     j = 2 * segment.engine.m + index
-    points = segment.several([root.position + part * reach for part in (BENT, *NEARER)])
+    points = segment.several([root.position + part * reach for part in (BEND_AT, *SCATTER_AT)])
     found = [float(point.row[j] - root.point.row[j]) for point in (aside, *points) if point is not None]
-    rises, nearer = np.array(found), np.array(NEARER)
+    rises, nearer = np.array(found), np.array(SCATTER_AT)
     if len(rises) < 2 + len(nearer) or not np.isfinite(rises).all():
         return 0.0
     if not (np.abs(rises[2:]) < 0.5 * abs(rises[0])).all():
         return 0.0
-    bend = (rises[1] / BENT - rises[0]) / (BENT - 1.0)
+    bend = (rises[1] / BEND_AT - rises[0]) / (BEND_AT - 1.0)
     apart = float(np.abs(rises[2:] - nearer * (rises[0] + (nearer - 1.0) * bend)).max())
-    return SEEN * apart / abs(rises[0]) * abs(aside.p - root.point.p)
+    return SAFETY * apart / abs(rises[0]) * abs(aside.p - root.point.p)
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:
@@ -222,12 +222,12 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
     """
     computed = _characteristic(segment.engine.spectrum(own)).tolist()
     best: list[list[float]] | None = None
-    error, last, known = math.inf, list[list[float]](), False
+    error, last, any_finite = math.inf, list[list[float]](), False
     for spacing, rows in _before(segment, position, LIMITS.distances):
         polynomials = _characteristic(segment.engine.spectrum(rows))
         if not np.isfinite(polynomials).all():
             continue
-        known = True
+        any_finite = True
         powers = spacing ** np.arange(POLES + 1)
         limit = (powers[:, None] * (EXTRAPOLATION @ polynomials)).tolist()
         if _apart(limit[0], computed) < LIMITS.agreeing:
@@ -240,11 +240,11 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
             best, error = limit[: poles + 1], changed[poles]
         last = limit
     if best is None:
-        return _by_margin(segment, position, own) if known else None
+        return _by_margin(segment, position, own) if any_finite else None
     if len(best) == 1:
         return None if _apart(best[0], computed) < LIMITS.agreeing + 10.0 * error else best
     grown = max(map(abs, best[-1])) / LIMITS.nearest[-1] ** (len(best) - 1)
-    if max(map(abs, computed)) > BEYOND * grown:
+    if max(map(abs, computed)) > UNBOUNDED * grown:
         return best
     return None if _bounded(segment, position, computed) else best
 
@@ -335,7 +335,7 @@ def _before(
                 else None
             )
             found[j] = point is not None and (
-                engine.norm(engine.join(point.u, point.p) - guess) <= STRAYING * distance
+                engine.norm(engine.join(point.u, point.p) - guess) <= LARGEST_MISS * distance
             )
             if point is not None:
                 rows[j] = point.row

@@ -150,7 +150,7 @@ class Kind:
         for role in ("test", "verify", "classify", *(["locus"] if self.test is not None else [])):
             given = getattr(self, role)
             if given is not None and not callable(given):
-                raise ValueError(f"kind {self.name}: {role} = {given!r} is no function of a point")
+                raise ValueError(f"kind {self.name}: {role} = {given!r} must be a function of a point")
         if self.marker not in MARKERS:
             raise ValueError(
                 f"kind {self.name}: marker = {self.marker!r}; expected one of matplotlib's: {' '.join(MARKERS)}"
@@ -236,7 +236,7 @@ class PointOnBranch:
         engine, kernels = self.engine, self.problem.kernels
         engine.residual(self.u, self.value)
         if kernels.matrix is None:
-            raise ValueError(f"a {type(self.problem).__name__} does not tell its Jacobian")
+            raise ValueError(f"a {type(self.problem).__name__} provides no Jacobian matrix")
         return np.array(kernels.matrix(self.problem.data, engine.work))
 
     def measure(self, name: str) -> float:
@@ -317,9 +317,7 @@ def _answer(kind: Kind, role: str, point: Point) -> Any:
 
 
 def _no_answer(kind: Kind, role: str, found: object, point: Point, wanted: str) -> ValueError:
-    return ValueError(
-        f"kind {kind.name}: its {role} returns {found!r} at {_place(point)}; {wanted} is asked for"
-    )
+    return ValueError(f"kind {kind.name}: its {role} returns {found!r} at {_place(point)}; expected {wanted}")
 
 
 def _place(point: Point) -> str:

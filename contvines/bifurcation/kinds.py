@@ -176,7 +176,7 @@ PASSING = (
         classify=classify_pair,
         locus="pair",
         leaves="circle",
-        nothing="an invariant circle leaves a Neimark-Sacker point, no branch of cycles; its circles() follow it",
+        nothing="an invariant circle leaves a Neimark-Sacker point, not a branch of cycles; the point's circles() computes it",
     ),
     Kind(
         "hopf",
@@ -307,17 +307,17 @@ def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
     """
     if not (kinds is None or isinstance(kinds, Iterable)):
         raise ValueError(
-            f"kinds is a {type(kinds).__name__}; a list is asked for, kinds=[*contvines.KINDS, yours]"
+            f"kinds is a {type(kinds).__name__}; expected a list, kinds=[*contvines.KINDS, yours]"
         )
     chosen = KINDS if kinds is None else tuple(kinds)
     names: dict[str, Kind] = {}
     for kind in chosen:
         if not isinstance(kind, Kind):
-            raise ValueError(f"kinds: {kind!r} is no contvines.Kind; use kinds=[*contvines.KINDS, yours]")
+            raise ValueError(f"kinds: {kind!r} is not a contvines.Kind; use kinds=[*contvines.KINDS, yours]")
         if BY_NAME.get(kind.name) is not kind:
             if kind.test is None:
                 raise ValueError(
-                    f"kinds: {kind.name} has no test function; test=lambda point: ... gives it one"
+                    f"kinds: {kind.name} has no test function; give it one, test=lambda point: ..."
                 )
             used = (*KINDS, *CODIMENSION_TWO.values(), *names.values())
             if any(kind.name == other.name or kind.label == other.label for other in used):

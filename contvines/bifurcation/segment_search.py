@@ -27,9 +27,9 @@ from .scan import SymmetryTest, parabola_dips, reached, turns_round
 from .settings import LIMITS
 
 PLACES = np.arange(1, 8) / 8.0  # positions at which the inside of a segment is sampled
-NARROWER = 3  # number of zooms towards the smallest value of a distance; each samples a quarter of the interval before
+ZOOMS = 3  # number of zooms towards the smallest value of a distance; each samples a quarter of the interval before
 HALVINGS = 9  # number of times that parts are halved on which a multiplier may reach the circle
-ROOF = 12  # number of zooms towards the largest value of the smallest margin, which may be shaped like a roof
+ROOF_ZOOMS = 12  # number of zooms towards the peak of the smallest margin, which may be shaped like a roof
 
 
 Split = tuple[float, Solved]
@@ -296,7 +296,7 @@ class SegmentSearch:
         for column in columns:
             look, low, high, outer = first, 0.0, 1.0, ends.distance(column)
             roof = column == ends.first_margin - 1
-            for _ in range(ROOF if roof else NARROWER):
+            for _ in range(ROOF_ZOOMS if roof else ZOOMS):
                 if look.split is not None or not look.points:
                     break
                 values = np.array([outer[0], *look.seen.distance(column), outer[1]])
@@ -356,17 +356,17 @@ class SegmentSearch:
         `neighbours` are the rows of the points before and behind the segment, with their positions.
         """
         ends = self.evidence_of([segment.a, segment.b])
-        known, halves = [*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], np.array([0.5])
+        sampled, halves = [*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], np.array([0.5])
         for _ in range(HALVINGS):
             look = self._at(segment, halves, ends, real)
             if look.split is not None or not look.points:
                 return look.split
-            known = sorted(
-                [*known, *((s, point.row) for s, point in zip(look.places, look.points))], key=itemgetter(0)
+            sampled = sorted(
+                [*sampled, *((s, point.row) for s, point in zip(look.places, look.points))], key=itemgetter(0)
             )
-            places, rows = np.array([s for s, _ in known]), np.array([row for _, row in known])
-            open_ = reached(self.engine, rows, np.diff(places)) & (places[:-1] >= 0.0) & (places[1:] <= 1.0)
-            halves = 0.5 * (places[:-1] + places[1:])[open_]
+            places, rows = np.array([s for s, _ in sampled]), np.array([row for _, row in sampled])
+            unsure = reached(self.engine, rows, np.diff(places)) & (places[:-1] >= 0.0) & (places[1:] <= 1.0)
+            halves = 0.5 * (places[:-1] + places[1:])[unsure]
             if not len(halves):
                 break
         return None

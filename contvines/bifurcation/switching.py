@@ -18,10 +18,10 @@ from .settings import LEAVING
 KERNEL = 4  # largest number of null vectors that are used
 MOST = 40  # largest number of branches that leave one point: half of 3^4 - 1, as where four mirrors meet
 # least ratio of the distances of first points at amplitudes a and a / 2; for points of the known branch, which bends away, it is the root of two
-LEAST = 1.6
+LEAST_RATIO = 1.6
 ATTEMPTS = 22  # largest number of halvings of the amplitude
-MISSED = 0.1  # largest distance of a first point from its hyperplane, in amplitudes
-ASIDE = (4.0 * EPSILON, -16.0 * EPSILON, 64.0 * EPSILON, -128.0 * EPSILON)  # relative shifts of unknowns
+LARGEST_MISS = 0.1  # largest distance of a first point from its hyperplane, in amplitudes
+SHIFTS = (4.0 * EPSILON, -16.0 * EPSILON, 64.0 * EPSILON, -128.0 * EPSILON)  # relative shifts of unknowns
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def _sides(count: int, n: int) -> np.ndarray:
 def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side: np.ndarray) -> np.ndarray:
     """Solve with the bordered matrix at a branch point, or beside it within rounding.
 
-    The matrix may by chance be singular to the last bit; it is then evaluated at unknowns shifted by `ASIDE`.
+    The matrix may by chance be singular to the last bit; it is then evaluated at unknowns shifted by `SHIFTS`.
     """
     image = side
     for near in _aside(engine, u):
@@ -140,7 +140,7 @@ def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side
 def _aside(engine: Engine, u: np.ndarray) -> Iterator[np.ndarray]:
     """Generate the unknowns, then the same shifted by a few roundings."""
     yield u
-    for part in ASIDE:
+    for part in SHIFTS:
         yield u + part * np.maximum(np.abs(u), engine.scale[:-1])
 
 
@@ -267,7 +267,7 @@ class _BranchPoint:
         self, direction: np.ndarray, bend: float = 0.0, exchanged: Exchanged = None
     ) -> Departure | None:
         """Compute the branch in a direction, or None; `bend` is the parameter's curvature, as `Departure.curvature`."""
-        ways = ((LEAST, LEAVING.slanted), (LEAST, LEAVING.grazing), (0.0, LEAVING.slanted))
+        ways = ((LEAST_RATIO, LEAVING.slanted), (LEAST_RATIO, LEAVING.grazing), (0.0, LEAVING.slanted))
         for asked in (exchanged, None) if exchanged is not None else (None,):
             for way in ways:
                 found = self._along(direction, bend, asked, *way)
@@ -289,7 +289,7 @@ class _BranchPoint:
             return None
         there = engine.join(found.u, found.p)
         # this close to the branch point Newton's method may stop at rounding, off the hyperplane
-        missed = abs(float(border @ (there - guess))) > MISSED * abs(amplitude)
+        missed = abs(float(border @ (there - guess))) > LARGEST_MISS * abs(amplitude)
         far = engine.norm(there - self.z) > reach * abs(amplitude)
         return None if far or missed else found
 

@@ -25,10 +25,10 @@ from ..problems.protocol import Problem
 from . import Branch, Ending
 
 # kinds at which stability can change
-LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
+STABILITY_CHANGES = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
 BEGINNING = ("fold",)  # kind that stands for the beginning of a branch: a multiplier is 1 there
 Start = TypeVar("Start")
-FAR = 1e-3  # largest change of a point, in the metric, when it is solved on the finer mesh
+LARGEST_CHANGE = 1e-3  # largest change of a point, in the metric, when it is solved on the finer mesh
 
 
 class Piece(NamedTuple):
@@ -210,7 +210,7 @@ def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
 
 def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
     """Whether solutions between neighbouring points of these kinds may be stable although those on both outer sides are not."""
-    return any(a != b and {a, b} & LOST for a in one for b in other)
+    return any(a != b and {a, b} & STABILITY_CHANGES for a in one for b in other)
 
 
 def stability(
@@ -243,9 +243,9 @@ def stability(
     doubtful = np.abs(outermost) <= engine.settings.marginal
     doubtful[list(twins)] = True
     doubtful &= ordinary
-    run, known = np.cumsum(~ordinary), np.flatnonzero(ordinary & ~doubtful)[::-1]
+    run, certain = np.cumsum(~ordinary), np.flatnonzero(ordinary & ~doubtful)[::-1]
     for i in np.flatnonzero(doubtful):
-        near = known[run[known] == run[i]]
+        near = certain[run[certain] == run[i]]
         stable[i] = (
             len(near) > 0 and stable[near[np.abs(near - i).argmin()]]
         )  # unstable if there is no such point
@@ -343,17 +343,17 @@ class Meshes:
         start
             Detector and start of the sides that were followed last.
         """
-        known, detector = dict[str, HalfBranch](), self.detectors[0]
+        done, detector = dict[str, HalfBranch](), self.detectors[0]
         while True:
-            found = {**known, **halves(detector, start, known)}
+            found = {**done, **halves(detector, start, done)}
             coarse = [half.detector for half in found.values() if half.status == Status.COARSE]
             meshes = [half.detector for half in found.values()] + [self.finer(each) for each in coarse]
             wanted = max(meshes, key=self.detectors.index)
             level = {side: self._level(half, wanted, real) for side, half in found.items()}
-            known = {side: half for side, half in level.items() if half is not None}
-            begin = None if len(known) == len(found) else again(detector, wanted, start)
+            done = {side: half for side, half in level.items() if half is not None}
+            begin = None if len(done) == len(found) else again(detector, wanted, start)
             if begin is None:
-                whole = {side: known.get(side) or self.read(half, wanted) for side, half in found.items()}
+                whole = {side: done.get(side) or self.read(half, wanted) for side, half in found.items()}
                 return whole, detector, start
             detector, start = wanted, begin
 
@@ -438,7 +438,7 @@ def _goes_on(half: HalfBranch, real: bool) -> bool:
     last = MeshMotion(half.engine).solved(guess)
     if last is None:
         return True
-    near = half.engine.distance(guess, last) <= FAR
+    near = half.engine.distance(guess, last) <= LARGEST_CHANGE
     return near and not (real and bool(half.engine.smallest_margin(last.row) < 0.0))
 
 

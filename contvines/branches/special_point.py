@@ -173,7 +173,7 @@ class SpecialPoint:
         problem = self.attached
         if not isinstance(problem, Resolved):
             raise ValueError(
-                f"{self.label}: its problem tells no eigenvectors; problems made of your own equations do"
+                f"{self.label}: its problem provides no eigenvectors; problems made of your own equations do"
             )
         return problem.eigenvectors(self.u, self.value, self.multipliers)
 

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 # statuses after which the mesh is tested: if it is too coarse the branch is followed again on a finer one
 UNFINISHED = (Status.RUNNING, Status.STEP_TOO_SMALL, Status.BORDER, Status.LEFT_INTERVAL, Status.CREEPING)
-ASTRAY = 0.5  # largest distance of a nearer first point from the expected parabola, relative to its distance along the tangent
+LARGEST_MISS = 0.5  # largest distance of a nearer first point from the expected parabola, relative to its distance along the tangent
 SHORTER = 0.125  # new step relative to one that jumped to another branch
-AGAIN = {
+STEP_AFTER = {
     Role.LEAP: SHORTER,
     Role.LANDING: 0.7,
 }  # new step relative to the one that is repeated; after a landing the new steps end elsewhere
@@ -96,18 +96,18 @@ def trace_half(
             wish = Finer(engine, image)
             continue
         chunk = chunk if lag is None else chunk.cut(lag.count)
-        known, scanned = journal.recall(name), detector.scan(chunk)
-        if known is None:
+        recorded, scanned = journal.recall(name), detector.scan(chunk)
+        if recorded is None:
             events = detector.look(chunk, scanned, real)
             if len(chunk) > 1:
                 journal.record(name, {**pack(events, engine), "parts": detector.parts})
         else:
-            events, detector.parts = unpack(known), int(known.get("parts", 0))
+            events, detector.parts = unpack(recorded), int(recorded.get("parts", 0))
         if any(_repeats(engine, event) for event in events):
             return _ended(half, chunk)
         status, count, wish = chunk.status if lag is None else Status.RUNNING, len(chunk), lag
-        if events and events[-1].role in AGAIN:
-            part, i = AGAIN[events[-1].role], int(events.pop().position)
+        if events and events[-1].role in STEP_AFTER:
+            part, i = STEP_AFTER[events[-1].role], int(events.pop().position)
             status, count = Status.RUNNING, i + 1
             wish = Retrace(count, part * _step(engine, chunk, count))
         elif events and events[-1].role is Role.LEFT:
@@ -190,12 +190,12 @@ def _opening(
     detector: Detector, origin: Solved, start: Solved, journal: Journal, key: str, real: bool
 ) -> tuple[HalfBranch, Solved]:
     """Return the opening as a half branch, and the first point: `start`, or a nearer one if `start` lies on another branch."""
-    engine, known = detector.engine, journal.recall(key)
-    if known is None:
+    engine, recorded = detector.engine, journal.recall(key)
+    if recorded is None:
         events, times = _looked_at(detector, origin, start, real)
         journal.record(key, {**pack(events, engine), "nearer": times})
     else:
-        events, times = unpack(known), int(known.get("nearer", 0))
+        events, times = unpack(recorded), int(recorded.get("nearer", 0))
     for _ in range(times):
         start = nearer(engine, origin, start) or start
     ends = bool(events) and events[-1].ends_branch
@@ -233,7 +233,7 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
     if found is None:
         return None
     missed = engine.norm(engine.join(found.u, found.p) - guess)
-    return found if missed <= ASTRAY * SHORTER * abs(along) else None
+    return found if missed <= LARGEST_MISS * SHORTER * abs(along) else None
 
 
 def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:

@@ -91,9 +91,9 @@ DOUBLINGS = 26
 # or if the parameter's change during a doubling is less than SHRINKS of that before, and than SMALL of the interval
 SHRINKS, SMALL = 0.5, 0.05
 STEADY = 0.05  # the parameter's change shrinks steadily if its ratio from doubling to doubling varies by less than this part
-MANY = 600  # number of short steps in a row after which a branch creeps
-OFF = 2.0  # limit of the distance, in units of `escape`, for families of cycles at one parameter value, as of a linear oscillator
-GROW = 2.0  # distance from the start, in typical sizes, from which the longest step grows with the distance
+CREEPING_STEPS = 600  # number of short steps in a row after which a branch creeps
+FAMILY_ESCAPE = 2.0  # limit of the distance, in units of `escape`, for families of cycles at one parameter value, as of a linear oscillator
+GROWS_FROM = 2.0  # distance from the start, in typical sizes, from which the longest step grows with it
 
 
 class Reach:
@@ -128,7 +128,7 @@ class Reach:
         """Return the factor by which the longest step grows at a point; 1 for compiled problems."""
         if self.engine.compiled:
             return 1.0
-        return max(1.0, float(self._distances(point.u[None, :])[0]) / GROW)
+        return max(1.0, float(self._distances(point.u[None, :])[0]) / GROWS_FROM)
 
     def escapes(self, chunk: Chunk, apart: float = np.inf) -> int | None:
         """Return the index of the first point at which the branch has run away, or None; `apart` bounds the distance of neighbouring points."""
@@ -170,7 +170,7 @@ class Reach:
             soon = DOUBLINGS * moved < room and (pole or stands)
             bound = not self.bounded and comparable and moved <= self.moved and (last or soon)
             family = self.bounded and stands and self._one_of_a_family(chunk.rows[i])
-            if bound or distances[i] > (OFF if family else SOLUTION.huge) * escape:
+            if bound or distances[i] > (FAMILY_ESCAPE if family else SOLUTION.huge) * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
             self.moved, self.turned, self.share = np.inf if turned else moved, False, share
@@ -189,7 +189,7 @@ class Reach:
         steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
         way = float(np.sqrt((steps**2) @ self.engine.weights).sum())
         self.slow = self.slow + len(chunk) - 1 if way < self.engine.settings.creep * (len(chunk) - 1) else 0
-        return self.slow >= MANY
+        return self.slow >= CREEPING_STEPS
 
     def _distances(self, points: np.ndarray) -> np.ndarray:
         """Return the root mean square distances from the start, in typical sizes, shape (n,)."""

@@ -66,7 +66,7 @@ class StepRule:
             factor = 0.0
         if not (factor > 0.0 or -1.0 < factor < 0.0):
             raise ValueError(
-                f"step_rule {self.name!r}: judge returned {found!r} for a step of length {numbers[3]:.3g}; a factor is asked for, "
+                f"step_rule {self.name!r}: judge returned {found!r} for a step of length {numbers[3]:.3g}; expected a factor "
                 "above 0 for the next step, or between -1 and 0 to try this one again"
             )
         return factor

@@ -131,8 +131,8 @@ def complete(problem: object) -> Problem:
     missing = [name for name in MEMBERS if not hasattr(problem, name)]
     if missing:
         raise TypeError(
-            f"{type(problem).__name__} does not say its {', '.join(missing)}; derive it from contvines.ProblemDefaults, which "
-            "answers what a problem has nothing to say on"
+            f"{type(problem).__name__} lacks {', '.join(missing)}; derive it from contvines.ProblemDefaults, which "
+            "has defaults for all optional members"
         )
     return cast(Problem, problem)
 
@@ -167,7 +167,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
         residual = engine.residual(u, p)
         why = f"does not converge (its residual is {residual:.3g})"
         if residual < SOLUTION.solved:
-            why = "is a solution, but where the derivatives of the equations vanish or are singular, in the parameter, too"
+            why = "is a solution, but the derivatives of the equations are zero or singular there, in the parameter, too"
         elif not residual < np.inf:
             trouble = getattr(engine.problem, "trouble", "")
             why = "cannot be evaluated with its derivatives" + (f"; {trouble}" if trouble else "")
@@ -225,7 +225,7 @@ def _untold(problem: object, scales: Scales | None) -> str:
     names = ", ".join(_name(problem, i) for i in scales.untold[:3]) + (
         ", ..." if len(scales.untold) > 3 else ""
     )
-    return f"at the start nothing tells how large {names} may become: 1 is taken; scale= would say it"
+    return f"the start does not show how large {names} may become: 1 is assumed; scale= sets another size"
 
 
 def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:

@@ -29,10 +29,8 @@ LARGEST = (
     2_000_000  # largest number of floats in a chunk; chunks grow up to it, or to eight times the setting
 )
 FEWEST = 8  # least number of points in a chunk, for any number of unknowns
-AGAIN = 32  # number of points that are traced again with shorter steps
-ALONG = (
-    0.7  # least cosine between a tangent and the chord to the next point if the mesh was not adapted between
-)
+RETRACED = 32  # number of points that are traced again with shorter steps
+LEAST_COSINE = 0.7  # between a tangent and the chord to the next point; less if the mesh was adapted between
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,22 +96,22 @@ def chunks(
             most = min(8 * settings.chunk, LARGEST // (2 * engine.n + engine.row_size))
             if reach.learned:
                 most = min(settings.chunk, most)  # the longest step is set for each chunk
-            known = journal.recall(name) if journal is not None else None
-            if known is not None:
+            recorded = journal.recall(name) if journal is not None else None
+            if recorded is not None:
                 chunk = Chunk(
-                    *(np.asarray(known[part]) for part in OF_SOLVED),
-                    status=Status(int(known["status"])),
+                    *(np.asarray(recorded[part]) for part in OF_SOLVED),
+                    status=Status(int(recorded["status"])),
                 )
-                h, still = float(known["h"]), bool(known.get("still", False))
+                h, still = float(recorded["h"]), bool(recorded.get("still", False))
                 reach.escapes(chunk)
             else:
                 room, longest = capacity, settings.max_step * reach.growth(history[-1])
                 if isinstance(wish, Retrace):
-                    room, longest = AGAIN, min(wish.longest, longest)
+                    room, longest = RETRACED, min(wish.longest, longest)
                     h = min(h, longest)
                 if not engine.compiled:
                     # points are expensive, and closing of a branch is tested only at the end of a chunk
-                    room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
+                    room = min(room, max(most, FEWEST), max(RETRACED, total // 2))
                 if engine.adaptive is not None:
                     room = min(room, engine.adaptive.chunk)
                 room = min(room, max(settings.max_points - total, 1))
@@ -361,7 +359,7 @@ class MeshMotion:
             return None
         engine = self.engine
         chord, direction = engine.join(other - u, 0.0), engine.join(tangent[:-1], 0.0)
-        along = engine.inner(direction, chord) > ALONG * engine.norm(chord) * engine.norm(direction)
+        along = engine.inner(direction, chord) > LEAST_COSINE * engine.norm(chord) * engine.norm(direction)
         return None if along else self.moving.carried(u, other)
 
     def adapted(self, history: list[Solved], still: bool = False) -> list[Solved]:

@@ -117,7 +117,7 @@ def diagram(
                     and not _ever_a_number(run, kind)
                 ):
                     warnings.warn(
-                        f"kind {kind.name}: its test is a number on no branch, so that nothing is found",
+                        f"kind {kind.name}: its test is not a finite number on any branch, so that no point is found",
                         UserWarning,
                         stacklevel=5,
                     )
@@ -221,7 +221,7 @@ def switch(
     if not isinstance(label, str):
         name = getattr(label, "label", None)
         hint = f"{name!r}, the label of this {type(label).__name__}" if name else "'SB1'"
-        raise TypeError(f"switch wants the label of a special point as text, for example {hint}")
+        raise TypeError(f"switch needs the label of a special point as text, for example {hint}")
     if label not in graph.special:
         known = ", ".join(graph.special) or "none"
         raise KeyError(f"the graph has no special point {label!r}; it has {known}")

@@ -31,11 +31,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # statuses by which a branch may end at its first point
-BEYOND = (
-    0.1 * MARGIN
-)  # a real branch whose smallest margins are all below this (negative) number is rounding, and is dropped
+# a real branch whose smallest margins are all below this (negative) number is rounding, and is dropped
+REAL_FROM = 0.1 * MARGIN
 
-OFF = 0.7  # distance of the first point from a special point at which a diagram is started, in first steps
+OFFSET = 0.7  # distance of the first point from a special point at which a diagram is started, in first steps
 
 
 def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) -> None:
@@ -214,7 +213,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
         name = pending.problem.parameter
         raise ValueError(
-            f"the branch dies at its first point, {name} = {first.p:.10g}, in every direction: "
+            f"the branch ends at its first point, {name} = {first.p:.10g}, in every direction: "
             + "; ".join(dict.fromkeys(ending.sentence(name) for ending in endings))
         )
     few = pending.kind is Origin.REST and len(half) < 4
@@ -348,7 +347,7 @@ def of_no_length(run: Run, half: HalfBranch) -> bool:
     nowhere = run.settings.rounding
     whole, unit = half.joined(), run.unit(half.end)
     length = whole.values.max() - whole.values.min()
-    if len(half) > 2 and whole.smallest[1:-1].max() < BEYOND:
+    if len(half) > 2 and whole.smallest[1:-1].max() < REAL_FROM:
         return True
     if length > run.settings.located * unit:
         return False
@@ -390,7 +389,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 side = margin >= MARGIN if abs(margin) > run.settings.inside else None
             elif at_special_point(run, engine, first):
                 # move off a special point, or it is detected on neither half; by less than a step, so that it differs from the second point
-                step = OFF * run.settings.first_step
+                step = OFFSET * run.settings.first_step
             if step > 0.0:
                 first = off(engine, first, step, side)
     if first is None and pending.point is not None:

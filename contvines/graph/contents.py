@@ -129,7 +129,7 @@ class Unresolved:
         if self.reason == "neighbours":
             return f"unresolved on {where}: {' and '.join(self.points)} cannot be distinguished"
         if self.reason == "parts":
-            return f"unresolved on {where}: not searched any closer, settings.parts of this branch are spent; raise them to search on"
+            return f"unresolved on {where}: not searched further, as this branch has used up settings.parts; raise it to search further"
         if self.reason == "determinant":
             return f"unresolved on {where}: a branch point, or two branches nearer than that"
         counts = (

@@ -146,9 +146,9 @@ def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[Seed]:
     onward = problem.onward if isinstance(problem, Onward) and not every else None
     key = f"{run.serial}/{'beyond' if onward is None else 'onward'}/{point.label}"
     recorded = run.journal.recall(key)
-    known = _rebuilt(recorded)
-    if known is not None:
-        return known
+    rebuilt = _rebuilt(recorded)
+    if rebuilt is not None:
+        return rebuilt
     ask = onward or problem.beyond
     seeds = run.attempt(point.label, CROSSING, lambda: list(ask(point)), None)
     if seeds is None:

@@ -265,7 +265,7 @@ def check_graph(graph: Graph) -> None:
     for attractor in (*graph.attractors, *graph.missing):
         check_fields("an attractor", attractor)
         if not math.isfinite(attractor.value):
-            raise ValueError("an attractor has no place")
+            raise ValueError("the value of an attractor is not finite")
     for name in ("scan", "scanned", "quiet", "followed", "unfollowed"):
         if not fits(graph.settings.get(name, 0), int):
             raise ValueError(f"settings: {name} cannot be {_shown(graph.settings[name])}")
@@ -288,7 +288,7 @@ def check_branch(label: str, branch: Branch) -> None:
     lengths = [len(a) for a in (branch.values, branch.tangents, branch.multipliers, branch.margin)]
     if branch.stable is not None:
         if branch.stable.ndim != 1 or branch.stable.dtype != bool:
-            raise ValueError(f"{label}: stable is no row of true and false")
+            raise ValueError(f"{label}: stable is not an array of true and false")
         lengths.append(len(branch.stable))
     if n < 1 or any(length != n for length in lengths) or branch.tangents.shape[1] != size + 1:
         raise ValueError(f"{label}: its arrays are not of the same length")

@@ -31,8 +31,8 @@ SLANTED = 0.1  # slope of the parameter per amplitude, in its unit, from which a
 HALVINGS = 4  # number of amplitudes that are tried for a cycle beside a Hopf point
 
 FAMILY = (
-    "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
-    "give the problem conditions= that pick one of them"
+    "the solutions that leave here are a continuous family, mapped to one another by a continuous symmetry; "
+    "give the problem conditions= that select one of them"
 )
 VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
 SWITCHING = "the search for branches that leave here"
@@ -76,7 +76,7 @@ def why_nothing_leaves(graph: Graph, label: str) -> str:
     ]
     kind = graph.kind(point.kind)
     if not (kind.leaves or known):
-        return kind.nothing or f"nothing is looked for that leaves a point of kind {point.kind}"
+        return kind.nothing or f"no branch is sought that leaves a point of kind {point.kind}"
     if kind.nothing and not known:
         return kind.nothing
     if known:

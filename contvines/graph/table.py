@@ -167,18 +167,20 @@ def simulated(graph: Graph) -> str:
     number = figures_in(graph.within)
     if empty := graph.settings.get("unknown"):
         stretches = ", ".join(f"{number(a)}..{number(b)}" for a, b in empty)
-        line += f"; what attracts on {stretches} is not known: give values there, or raise scan or budget"
+        line += f"; the attractors on {stretches} are not known: give values there, or raise scan or budget"
     scanned, quiet = graph.settings.get("scanned"), graph.settings.get("quiet", 0)
     if not scanned:
         return line
     if quiet >= graph.settings["scan"]:
-        line += f"; of {scanned} scattered ones the last {quiet} met nothing new"
+        line += f"; the last {quiet} of {scanned} scattered values showed nothing new"
     else:
-        line += f"; {scanned} scattered ones met something new again and again, the last {quiet} did not: raise scan to look on"
+        line += f"; {scanned} scattered values showed new motions again and again, except the last {quiet}: raise scan to search further"
     ends, left = graph.settings.get("followed", 0), graph.settings.get("unfollowed", 0)
     if ends:
-        line += f"; at {ends} end{'' if ends == 1 else 's'} of stability the motion was followed to what comes after it"
-    return f"{line}; {left} more are left: raise scan" if left else line
+        line += (
+            f"; at {ends} end{'' if ends == 1 else 's'} of stability the motion was followed to the next one"
+        )
+    return f"{line}; {left} more ends are left: raise scan" if left else line
 
 
 def stable_text(branch: Branch, number: Callable[[float], str]) -> str:

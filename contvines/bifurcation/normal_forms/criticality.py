@@ -29,9 +29,9 @@ from .coefficients import Forms
 
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
 # points beside a special point are placed on a chord along the tangent, much longer than the step, so that none of them is an end of the chord
-WIDE = 16.0  # length of this chord, in steps
-PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / WIDE  # positions of the points on it
-NEARER = 0.25  # ratio of successive steps, if the result has not converged
+CHORD = 16.0  # length of this chord, in steps
+PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / CHORD  # positions of the points on it
+STEP_RATIO = 0.25  # ratio of successive steps, if the result has not converged
 
 
 def strong_resonance(multiplier: complex) -> str:
@@ -128,7 +128,7 @@ def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float |
 
 def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
     """Return the points of the branch at +step, -step, +step/2 and -step/2; None if one of them cannot be solved."""
-    length = WIDE * step
+    length = CHORD * step
     z, along = engine.join(point.u, point.p), length * point.tangent
     border = engine.weights * point.tangent
     chord = np.array([z, along, z + along, along])
@@ -164,7 +164,7 @@ def _converged(
                 best, least = value, apart
             if apart <= NORMAL_FORMS.digits:
                 break
-        step *= NEARER
+        step *= STEP_RATIO
     return best
 
 

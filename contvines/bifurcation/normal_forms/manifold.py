@@ -265,17 +265,17 @@ def reduced(
             own = Reduction(forms, vectors / lengths, linear, real, stay, radius).to(degree).N
         except ValueError:
             continue
-        now = dict(wanted(own))
+        current = dict(wanted(own))
         if before is not None:
-            sizes = max(TINY, *map(abs, now.values()))
-            change = max(abs(now[name] - before[name]) for name in now) / sizes
+            sizes = max(TINY, *map(abs, current.values()))
+            change = max(abs(current[name] - before[name]) for name in current) / sizes
             if change < error:
                 error, best = change, own
                 if error < NORMAL_FORMS.enough:
                     break
             elif error < NORMAL_FORMS.digits and change > 100.0 * error:  # rounding dominates
                 break
-        before = now
+        before = current
     if not error < NORMAL_FORMS.digits:
         raise ValueError("the coefficients are not known to two digits")
     return dict(wanted({a: part * np.prod(lengths ** np.array(a)) / lengths for a, part in best.items()}))

@@ -98,16 +98,16 @@ def _coefficient(
     radius = RADIUS * reach / float(np.abs(q).max())
     best, before = Coefficient(np.nan, np.inf), None
     for _ in range(RADII):
-        now = _at_radius(changes, u, q, w, solve, radius)
-        if now is not None and before is not None:
-            change = abs(now - before) / omega
+        current = _at_radius(changes, u, q, w, solve, radius)
+        if current is not None and before is not None:
+            change = abs(current - before) / omega
             if change < best.error:
                 best = Coefficient(before / omega, change)
             elif change > WORSE * best.error:
                 break
             if change <= NORMAL_FORMS.enough * abs(best.value):
                 break
-        before, radius = now, SMALLER * radius
+        before, radius = current, SMALLER * radius
     if not np.isfinite(best.error):
         raise ValueError("the equations cannot be evaluated near the point")
     return best
@@ -178,10 +178,10 @@ def _null(matrix: sp.csc_array, value: complex, n: int) -> tuple[complex, np.nda
             vector = factors.solve(vector, transposed)
             vector = vector / np.linalg.norm(vector)
             image = product @ vector
-            now = float(np.linalg.norm(image - (vector.conj() @ image) * vector))
-            if not now < 0.5 * rest:
+            current = float(np.linalg.norm(image - (vector.conj() @ image) * vector))
+            if not current < 0.5 * rest:
                 break
-            rest = now
+            rest = current
         if not np.isfinite(vector).all():
             raise ValueError("F_u has no eigenvector at the critical eigenvalue")
         found.append(vector)

@@ -90,7 +90,7 @@ def test_only_the_kinds_asked_for_are_looked_for():
 
 def test_a_test_that_is_nowhere_a_number_is_told():
     nothing = cv.Kind("nothing", "NO", test=lambda point: float("nan"))
-    with pytest.warns(UserWarning, match="kind nothing: its test is a number on no branch"):
+    with pytest.warns(UserWarning, match="kind nothing: its test is not a finite number on any branch"):
         with_kind(cv.AlgebraicProblem(lambda u, p: u - p, [0.5], 0.5), nothing)
 
 

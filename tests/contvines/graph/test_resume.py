@@ -117,7 +117,7 @@ def test_a_branch_that_dies_at_its_start_leaves_no_file(tmp_path):
         derivative=lambda u, p: [-1.0],
     )
     with (
-        pytest.raises(ValueError, match="dies at its first point"),
+        pytest.raises(ValueError, match="ends at its first point"),
         cv.resume(tmp_path / "x.vines") as journal,
     ):
         cv.diagram(problem, within=(-1.0, 1.0), journal=journal)
