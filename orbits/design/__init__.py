@@ -1,4 +1,4 @@
-"""Design: figures, scales, families of machines, the best choice, transients."""
+"""Design of machines: design figures, SI scales, families of machines, optimisation, transients."""
 
 from orbits.design.choice import Choice, best
 from orbits.design.family import Family

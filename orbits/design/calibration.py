@@ -1,7 +1,7 @@
-"""Calibration: restitution, friction and other parameters from measured impact times or from a measured sweep.
+"""Calibration: estimate restitution, friction and other parameters from measured impact times or from a measured sweep.
 
-Least squares through simulated motions, with confidence intervals from the curvature of the sum of squares: linearised about the estimate, with
-Student's t. Sources of scatter that the model does not have are in the residual, and so in the intervals.
+Simulated motions are fitted to the data by least squares. Confidence intervals follow from the Jacobian of the residuals at the estimate
+and Student's t distribution. Scatter that the model does not describe enlarges the residuals, and so the intervals.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from orbits.simulation.runs import Start
 
 
-GRID = 900  # places at which the search for a guess looks
-CANDIDATES = 8  # of them that are followed
-STARTS = 5  # of a sweep, beside rest
-TRIED = 6  # values of the parameters with which they are tried
-ASTRAY = 0.1  # of the mean time between impacts: data that scatter more are not described by the model
-HALVINGS = 40  # of a default interval, towards what a parameter can be
-SETTLED = 400  # forcing periods before a steady response is read
-WIDEST = 0.1  # step of differences, of the limits' span
-AGREEING = 0.3  # relative difference of slopes from one step and from four times that, where data are smooth
+GRID = 900  # most grid points of the search for a guess
+CANDIDATES = 8  # grid points from which least squares begins
+STARTS = 5  # random starts of a sweep, besides rest
+TRIED = 6  # random parameter values that are combined with these starts
+ASTRAY = 0.1  # largest scatter, relative to the mean time between impacts; above it the fit is refused
+HALVINGS = 40  # bisections that move a default limit to the last possible value of a parameter
+SETTLED = 400  # forcing periods that are left out before a steady response is measured
+WIDEST = 0.1  # largest step of finite differences, relative to the distance of the limits
+AGREEING = 0.3  # largest relative difference between slopes with one step and with four times that step; below it data count as smooth
 
 
 def from_impacts(
@@ -45,28 +45,34 @@ def from_impacts(
     fixed: Mapping[str, float] | None = None,
     confidence: float = 0.95,
 ) -> Calibration:
-    """From the instants of successive impacts.
+    """Estimate parameters from the instants of successive impacts.
 
-    The clock of the measurement needs no phase: it is set so that the times agree in the mean. Parameters to which time is proportional cannot be distinguished from it.
+    The time at which the measurement begins need not be known: measured and simulated times are compared after removal of their mean difference.
 
     Parameters
     ----------
     machine : Model
     times : sequence of float
-        Seconds for a physical machine, else 1/omega_0; ascending.
+        Instants of impacts, ascending; in seconds for a physical machine, else in 1/omega_0.
     unknown : mapping
-        Parameters to be estimated, with guesses; of a physical machine counted in its units.
+        Parameter name -> guess; for a physical machine in its units.
     start : mapping, optional
-        State in which the measurement begins (see `orbits.simulation.simulate`): from rest by default.
+        State in which the measurement begins (see `orbits.simulation.simulate`); default: rest.
     limits : mapping, optional
+        Parameter name -> (low, high); a parameter without an entry has default limits.
     fixed : mapping, optional
-        Parameters that are no fields of the machine (`amplitude`).
+        Values of parameters that are no fields of the machine (`amplitude`).
     confidence : float
+        Confidence level of the intervals.
+
+    Returns
+    -------
+    Calibration
 
     Raises
     ------
     ParameterError
-        If the times cannot be, or the model has fewer impacts than were measured.
+        If the times are too few, not finite or not ascending, or if the fitted model scatters too much about the data.
     """
     from orbits.simulation import simulate
 
@@ -80,7 +86,8 @@ def from_impacts(
         params = _vector(model, dict(zip(unknown, values)), fixed)
         numbers: dict[str, Any] = model.named(params)
         instants = np.empty(0)
-        for events in (3 * used + 20, 40 * used + 400):  # most motions have few turns between impacts
+        # few events first, because most motions have few turns between impacts
+        for events in (3 * used + 20, 40 * used + 400):
             if instants.size < used:
                 instants = simulate(model, start, events=events, **numbers).impact_times[:used]
         if instants.size < used:
@@ -105,17 +112,19 @@ def _nearer(
     limits: Mapping[str, tuple[float, float]],
     count: int,
 ) -> dict[str, float]:
-    """A guess good enough for all impacts: from the best of a grid for the first few, with more and more of them.
+    """Improve a guess until it fits all impacts.
 
-    Motions with impacts forget: a wrong guess is soon out of step, and the sum over many impacts has many minima. So the lowest places
-    of the grid that have no lower neighbour are all taken along, and the best of them at the end is the guess.
+    With a wrong guess, simulated impacts soon lose their order relative to the measured ones, and the sum of squares over many impacts has
+    many minima. So a grid is evaluated with the first few impacts only. From its lowest local minima (and the given guess) least squares
+    is repeated with twice as many impacts each time. The candidate with the smallest sum over all impacts is returned.
     """
     from scipy.optimize import least_squares
 
     few = min(count, 2 * len(guess) + 4)
     low, high = (np.array([limits[name][k] for name in guess], dtype=float) for k in (0, 1))
     side = max(int(GRID ** (1.0 / len(guess))), 3)
-    shares = [np.linspace(0.0, 1.0, side + 2)[1:-1] ** (2.0 if a == 0.0 else 1.0) for a in low]  # closer to 0
+    # a parameter whose lower limit is 0 has more grid points near 0
+    shares = [np.linspace(0.0, 1.0, side + 2)[1:-1] ** (2.0 if a == 0.0 else 1.0) for a in low]
     places = np.stack(
         np.meshgrid(*(a + (b - a) * x for a, b, x in zip(low, high, shares)), indexing="ij"), axis=-1
     )
@@ -140,7 +149,7 @@ def _nearer(
 
 
 def _lowest(sums: np.ndarray, places: np.ndarray, most: int) -> list[np.ndarray]:
-    """Places of a grid that are no higher than their neighbours, the lowest first."""
+    """Return at most `most` local minima of `sums` on a grid, as points of `places`, the lowest first."""
     from scipy.ndimage import minimum_filter
 
     least = np.argwhere((sums <= minimum_filter(sums, 3, mode="nearest")) & np.isfinite(sums))
@@ -161,24 +170,34 @@ def from_sweep(
     transient: float = SETTLED,
     confidence: float = 0.95,
 ) -> Calibration:
-    """From steady responses over a parameter, measured in the order given: each from where the one before it has settled.
+    """Estimate parameters from the steady responses of a measured sweep.
 
-    Several motions may coexist: the first response is that of the start, at rest or one of a few at random, from which all of them come
-    closest to the data.
+    The simulated sweep visits the values in the given order; each motion begins in the state in which the one before has settled.
+    Several motions may coexist, so the first one is simulated from rest and from a few random states; the start whose sweep is closest to
+    the data is used.
 
     Parameters
     ----------
     machine : Model
     over : str
-        What was swept.
+        The swept parameter.
     values, responses : sequences of float
-        In the machine's units.
+        Values of the parameter and measured responses, in the machine's units, in the order of measurement.
     unknown, limits, fixed, confidence
         As for `from_impacts`.
     measure : str
-        What was measured: of `orbits.attractors.attractor.measure_names`.
+        The measured quantity, one of `orbits.attractors.attractor.measure_names`.
     transient : float
-        Forcing periods after which a response is taken as steady.
+        Forcing periods after which a response counts as steady.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ParameterError
+        If the columns differ in length or have numbers that are not finite, or if the data do not determine the parameters.
     """
     from orbits.attractors import sweep
 
@@ -210,6 +229,7 @@ def from_sweep(
 
 
 def _measured(times: ArrayLike) -> np.ndarray:
+    """Return the measured instants as an array, or raise a `ParameterError` if they cannot be used."""
     measured = np.asarray(times, dtype=float)
     if measured.ndim != 1 or measured.size < 3:
         raise ParameterError("too few impacts: give the instants of three or more")
@@ -223,7 +243,7 @@ def _measured(times: ArrayLike) -> np.ndarray:
 
 
 def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Varying:
-    """The machine given by what is to be estimated."""
+    """Return the machine in a form that has all unknown parameters as fields (a physical machine may be given by different ones)."""
     if not unknown:
         raise ParameterError(
             "nothing is unknown: name a parameter and a guess, for example restitution = 0.6"
@@ -237,6 +257,7 @@ def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Varying:
 
 
 def _vector(model: Varying, values: Mapping[str, float], fixed: Mapping[str, float] | None) -> np.ndarray:
+    """Return the parameter vector with the `fixed` values and the estimated `values`."""
     params = model.vector(fixed)
     for name, value in values.items():
         params = along(model.path(name, params), params, float(value))
@@ -246,6 +267,7 @@ def _vector(model: Varying, values: Mapping[str, float], fixed: Mapping[str, flo
 def _limits(
     model: Varying, unknown: Mapping[str, float], limits: Mapping[str, Sequence[float]] | None
 ) -> dict[str, tuple[float, float]]:
+    """Return limits of every unknown parameter: the given ones, or by default 0.2 to 5 times the guess."""
     usual = {"restitution": (0.01, 1.0), "friction": (0.0, 2.0)}
     found: dict[str, tuple[float, float]] = {}
     for name, value in unknown.items():
@@ -262,7 +284,7 @@ def _limits(
 
 
 def _possible(model: Varying, name: str, value: float, end: float) -> float:
-    """An end of an interval about a value, or the last that the parameter can be on the way there."""
+    """Return `end`, or the last possible value of the parameter on the way from `value` to it."""
 
     def can_be(number: float) -> bool:
         try:
@@ -287,17 +309,19 @@ class Calibration:
     Attributes
     ----------
     values : dict
-        Estimates.
+        Name -> estimate.
     intervals : dict
-        Name -> (low, high) at `confidence`, cut off at the limits.
+        Name -> (low, high) of the confidence interval, cut off at the limits.
     confidence : float
+        Confidence level of the intervals.
     scatter : float
         Standard deviation of the residuals, in the unit of the data.
     residuals : float array
+        Model minus data at the estimate.
     correlation : float array (n, n)
-        Of the estimates: near 1 or -1 the data cannot tell two of them apart.
+        Correlation of the estimates; near 1 or -1 the data do not distinguish two parameters.
     between : float
-        Of impacts: the mean time from one to the next, in the unit of the data.
+        Mean time between impacts, in the unit of the data; nan for a sweep.
     """
 
     values: dict[str, float]
@@ -323,24 +347,29 @@ def fit(
     confidence: float = 0.95,
     spent: int = 0,
 ) -> Calibration:
-    """Least squares with confidence intervals.
+    """Fit parameters by least squares and compute confidence intervals.
 
     Parameters
     ----------
     residuals : callable
-        Data minus model at parameter values (n,), shape (m,).
+        Maps parameter values (n,) to the differences between model and data, shape (m,).
     guess : mapping
-        Where the search begins.
+        Name -> value at which the search begins.
     limits : mapping
         Name -> (low, high).
     confidence : float
+        Confidence level of the intervals.
     spent : int
-        Degrees of freedom of the data that something else than the parameters has used up.
+        Degrees of freedom that quantities other than the parameters use up, for example a mean that was subtracted.
+
+    Returns
+    -------
+    Calibration
 
     Raises
     ------
     ParameterError
-        If there are fewer data than parameters, or they do not depend on one of them.
+        If the guess lies outside the limits, there are no more data than parameters, or the data do not depend on one of the parameters.
     """
     from scipy.optimize import least_squares
     from scipy.stats import t
@@ -399,15 +428,15 @@ def _effects(
     high: np.ndarray,
     scatter: float,
 ) -> np.ndarray:
-    """How the residuals change per change of a parameter, shape (m, n).
+    """Jacobian of the residuals with respect to the parameters by central differences, shape (m, n).
 
-    By derivatives where the data are smooth. Responses also jump from one motion to another, and jitter where the motion does not
-    settle: there a derivative says nothing, or much too much. Where differences over four times the step do not agree, steps are
-    widened until they reach as far as a residual of size `scatter` lets the parameter go.
+    Small steps serve where the data are smooth. But responses jump where the motion changes, and jitter where the motion does not settle;
+    there the slope over a small step is meaningless. So a step is compared with one four times as long; while the slopes
+    disagree, the step grows, at most until it changes the residuals by `scatter`.
     """
 
     def slope_of(j: int, step: float) -> np.ndarray:
-        """Central difference with respect to parameter j; at a limit to one side."""
+        """Central difference with respect to parameter j; one-sided at a limit."""
         below, above = x.copy(), x.copy()
         below[j], above[j] = max(x[j] - step, low[j]), min(x[j] + step, high[j])
         return (residuals(above) - residuals(below)) / (above[j] - below[j])

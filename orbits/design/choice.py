@@ -1,4 +1,4 @@
-"""The best choice: the optimum of an outcome over one or two parameters, for the machine as it is or for what is not known of it."""
+"""Optimisation: the best value of an outcome over one or two parameters, for one machine or in the worst case over uncertain parameters."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Evaluate = Callable[[dict[str, float]], Mapping[str, float]]
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What was chosen.
+    """The best parameters and their outcomes.
 
     Attributes
     ----------
     values : dict
         The chosen parameters.
     outcome : float
-        The outcome there (over the samples: the worst, or the quantile).
+        The outcome of the choice (with tolerances: the worst one over the samples, or the quantile).
     others : dict
-        The other outcomes there (over the samples: the median of those that have one; nan where none has).
+        All other outcomes of the choice (with tolerances: the median of the finite ones; nan if there are none).
     tried : list of (dict, float)
-        Every choice that was evaluated, and its outcome; nan where there was none.
+        Every evaluated choice with its outcome; nan if it has none.
     bracket : dict
-        Name -> the neighbours of the choice among what was tried.
+        Name -> the neighbouring values among the evaluated choices, below and above.
     """
 
     values: dict[str, float]
@@ -52,28 +52,30 @@ def best(
     grid: int = 9,
     known: Sequence[tuple[Mapping[str, float], float]] = (),
 ) -> Choice:
-    """The choice with the lowest (or largest) outcome.
+    """Find the choice of parameters with the lowest (or largest) outcome.
 
-    The interval is looked at on a grid first, because an outcome over coexisting motions has kinks and steps; then the best of it is
-    refined between its neighbours (`scipy.optimize`: golden sections bounded by them over one parameter, Nelder and Mead's
-    simplex over two), and the best of everything that was tried is returned.
+    A grid is evaluated first, because an outcome over coexisting motions has kinks and steps. Then the best grid point is
+    refined between its neighbours (`scipy.optimize`: Brent's bounded method over one parameter, Nelder and Mead's
+    simplex over two). The best of all evaluated choices is returned.
 
     Parameters
     ----------
     evaluate : callable
-        All outcomes by name of the machine with these values; a ValueError or a number that is not finite is never the best.
+        Maps parameter values to all outcomes of this machine, both by name. A choice with a ValueError or an outcome that is not finite is never the best.
     outcome : str
+        Name of the outcome to be optimised.
     over : mapping
-        One or two parameters and the intervals in which they may be chosen.
+        One or two parameters, each with its interval (low, high).
     largest : bool
+        Maximise instead of minimise.
     tolerances : sequence of mapping
-        Values of uncertain parameters; the outcome of a choice is then the worst over them.
+        Samples of uncertain parameters, name -> value; the outcome of a choice is the worst over the samples.
     quantile : float, optional
-        Not the worst, but this quantile: 0.95 leaves out the worst twentieth.
+        Take this quantile over the samples instead of the worst: 0.95 leaves out the worst twentieth.
     grid : int
-        Values per parameter that are looked at first.
+        Values per parameter on the grid.
     known : sequence of (mapping, float)
-        Outcomes that are known already, of a survey; the grid is left out where there are any.
+        Choices whose outcomes are known already (from a survey); if there are any, no grid is evaluated.
 
     Returns
     -------
@@ -82,7 +84,7 @@ def best(
     Raises
     ------
     ParameterError
-        If the request cannot be, or nothing that was tried has the outcome.
+        If an argument is out of range, the outcome is unknown, or no evaluated choice has a finite outcome.
     """
     _check(over, quantile, grid)
     names = list(over)
@@ -148,7 +150,7 @@ def _judged(
     quantile: float | None,
     sign: float,
 ) -> tuple[float, dict[str, float]]:
-    """The outcome of a choice over the tolerances, lowest best, and all outcomes (their medians over the tolerances that have one)."""
+    """Return the outcome of a choice over all samples, with the sign that makes the lowest the best, and the medians of all outcomes; (inf, {}) if a sample fails."""
     rows = []
     for drawn in tolerances:
         try:
@@ -165,7 +167,7 @@ def _judged(
 
 
 def _middle(numbers: Sequence[float]) -> float:
-    """The median of those that are numbers; nan where none is."""
+    """Median of the finite numbers; nan if there are none."""
     finite = [number for number in numbers if math.isfinite(number)]
     return float(np.median(finite)) if finite else math.nan
 
@@ -176,6 +178,7 @@ def _refine(
     tried: list[tuple[float, ...]],
     over: list[tuple[float, float]],
 ) -> None:
+    """Optimise `value` between the neighbours of `start`; the results are those that `value` stores."""
     from scipy.optimize import minimize, minimize_scalar
 
     brackets: list[Any] = [_neighbours(x, sorted({key[i] for key in tried})) for i, x in enumerate(start)]
@@ -204,6 +207,6 @@ def _refine(
 
 
 def _neighbours(x: float, values: list[float]) -> tuple[float, float]:
-    """The values next to x, or x itself at an end."""
+    """The values next to x, below and above; x itself at an end."""
     place = values.index(x)
     return values[max(place - 1, 0)], values[min(place + 1, len(values) - 1)]

@@ -1,4 +1,4 @@
-"""Columns of measured numbers from a CSV, and the heads above them."""
+"""Read columns of measured numbers and their headings from a CSV file."""
 
 from __future__ import annotations
 
@@ -11,14 +11,21 @@ from orbits.machines.base import ParameterError
 
 
 def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
-    """The heads of a CSV, empty where it has none, and its numbers, shape (n, columns); empty lines and lines that begin with # are passed over.
+    """Read the headings and the first `columns` columns of a CSV file.
 
-    Cells may be parted by commas, semicolons (then with a decimal comma, too) or tabs.
+    Empty lines and lines that begin with # are ignored. Cells may be separated by commas, tabs or semicolons; with semicolons, numbers may
+    have decimal commas.
+
+    Returns
+    -------
+    list of str
+        Headings; empty if the file has none.
+    float array (n, columns)
 
     Raises
     ------
     ParameterError
-        With the row that cannot be read.
+        If the file or one of its rows cannot be read; the message names the row.
     """
     path = Path(path)
     try:

@@ -1,7 +1,7 @@
-"""A family of machines: one machine whose parameters take many values, and an orbit of each to begin with.
+"""A family of machines: one machine with many values of its parameters, and a first orbit for each of them.
 
-An orbit of a neighbour is carried over by continuation in all parameters at once: Newton's method from its nodes, over half the way
-where the whole is too far.
+The orbit of a neighbouring machine is carried over by continuation in all parameters at once: Newton's method begins at its nodes; if it
+fails, the step is halved.
 """
 
 from __future__ import annotations
@@ -29,22 +29,23 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
-PLACES = 5  # where an orbit is looked for in the interval
-NARROW = 1.0 / 64.0  # the least part of the way that is tried
-DRAWN = 3  # starts at the first, the middle and the last value
+PLACES = 5  # values in the interval `within` at which a first orbit is sought
+NARROW = 1.0 / 64.0  # smallest step from one machine to another, relative to the whole way
+DRAWN = 3  # random starts at the first, the middle and the last value of a sweep
+# forcing periods that are left out: of every motion, and of a motion without a period that may still be a transient
 USUAL, LONG = (
     200,
     800,
-)  # forcing periods that are left out, and of a motion without a period that may be a transient
-ENDS = 0.01  # relative fall of the response by which a transient is known
-CLIMBED = 24  # values to either side of the largest response
+)
+ENDS = 0.01  # relative decrease of the response in a longer simulation; above it the motion was a transient
+CLIMBED = 24  # most values to either side of the largest response
 
 Near = tuple[np.ndarray, np.ndarray, tuple[str, ...], tuple[Mode, ...], int]
-"""What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
+"""Data of an orbit from which the orbit of a neighbouring machine is computed: nodes, parameter vector, events, modes, periods."""
 
 
 def settled(model: Varying, params: np.ndarray, state: Start = None) -> Orbit | None:
-    """The orbit to which the machine settles from rest, or from a state; None where nothing recurs."""
+    """Return the orbit on which the machine settles from rest or from `state`; None if it finds no periodic one that is real."""
     values: dict[str, Any] = model.named(params)
     found = find_attractor(model, state, max_period=8, **values)
     if found.kind == "stuck":
@@ -59,25 +60,26 @@ def settled(model: Varying, params: np.ndarray, state: Start = None) -> Orbit | 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Machines that differ in some parameters.
+    """Machines that differ in the values of some parameters.
 
     Parameters
     ----------
     machine : Model or Machine
-        The parameters that do not vary.
+        Supplies all parameters that do not vary.
     word : str, optional
-        Of the orbit to begin with; without it the one to which the machine settles from rest.
+        Word of the first orbit; default: that of the motion on which the machine settles from rest.
     periods : int
+        Forcing periods after which this orbit closes.
     guess : nested list, optional
-        Nodes of that orbit in `machine` itself.
+        Nodes of this orbit for `machine` itself.
     loose : mapping, optional
-        Parameters that belong to the orbit rather than to the machine.
+        Values of parameters that are no fields of the machine (`amplitude`).
     over, within : optional
-        A parameter and its interval in which an orbit to begin with may lie elsewhere, where the machine itself has none.
+        A parameter and an interval; where a machine has no periodic motion, a first orbit is sought at other values in this interval.
     state : mapping, optional
-        Where simulations begin that look for such an orbit: at rest by default.
+        State in which simulations begin; default: rest.
     tables : sequence of Table
-        Parameters that depend on a condition; values may then name the condition.
+        Parameters that depend on a condition (a temperature); values may then contain the condition.
     """
 
     machine: Varying
@@ -96,20 +98,21 @@ class Family:
         return self.machine.notation
 
     def __call__(self, values: Mapping[str, float], near: Near | None = None) -> Orbit:
-        """The orbit of the machine with these values, counted in its units.
+        """Return the first orbit of the machine with these values.
 
-        Where the orbit with the family's word does not exist, the one to which the machine settles from rest.
+        If no real orbit with the family's word exists, the machine is simulated and the motion on which it settles is returned.
 
         Parameters
         ----------
         values : mapping
+            Parameter name -> value, in the machine's units.
         near : tuple, optional
-            `near` of a neighbour's orbit, or of this very one.
+            Result of `near` for the orbit of a neighbour, or for this orbit itself.
 
         Raises
         ------
         ValueError
-            If the values make no machine, or no orbit is found.
+            If there is no machine with these values, or no orbit is found.
         """
         model, loose = self.machine_at(values)
         if near is not None:
@@ -142,9 +145,9 @@ class Family:
         return orbit
 
     def machine_at(self, values: Mapping[str, float]) -> tuple[Varying, dict[str, float]]:
-        """The machine with these values, and the parameters left to its orbits."""
+        """Return the machine with these values, and the values of parameters that are no fields of it."""
         values = resolved(self.tables, values)
-        # a physical machine counts in its units; the numbers of a page are all its orbits'
+        # all parameters of a declared machine belong to its orbits, so the machine itself stays the same
         change = getattr(self.machine, "with_", None) or getattr(self.machine, "changed", None)
         if change is None:
             return self.machine, {**(self.loose or {}), **values}
@@ -162,16 +165,21 @@ class Family:
     def simulated(
         self, values: Mapping[str, float], over: str, at: Sequence[float], starts: int
     ) -> list[tuple[float, dict[str, float], str]]:
-        """Motions on which simulations settle: value of `over`, measures, word.
+        """Simulate one machine and list the motions on which it settles.
 
         Parameters
         ----------
         values : mapping
-            Of the machine.
+            Parameter name -> value of the machine.
         over, at
-            The parameter that is set to each of these.
+            The parameter that varies, and its values.
         starts : int
-            Simulations at each: from rest, then from states drawn at random (always the same ones).
+            Simulations at each value: one from rest, the others from random states (the same ones in every call).
+
+        Returns
+        -------
+        list of (float, dict, str)
+            Value of `over`, measures and word of each motion.
         """
         model, loose = self.machine_at(values)
         found = []
@@ -182,21 +190,21 @@ class Family:
         return found
 
     def swept(self, values: Mapping[str, float], over: str, at: Sequence[float]) -> list[tuple[float, float]]:
-        """Responses by simulation alone: values of `over` and the machine's usual measure.
+        """Return responses by simulation alone, as (value of `over`, default measure of the machine); see `swept_responses`.
 
         Parameters
         ----------
         values : mapping
-            Of the machine.
+            Parameter name -> value of the machine.
         over, at
-            The parameter, and its values, ascending.
+            The parameter that varies, and its values, ascending.
         """
         model, loose = self.machine_at(values)
         return swept_responses(model, over, at, loose)
 
     @staticmethod
     def near(orbit: Orbit) -> Near | None:
-        """What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
+        """Return the data from which the orbit of a neighbouring machine is computed; None for a motion without events."""
         word = orbit.word
         return (
             (orbit.nodes, orbit.params, word.events, word.modes, orbit.periods) if len(orbit.nodes) else None
@@ -205,7 +213,20 @@ class Family:
     def starts(
         self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]
     ) -> list[Near | None]:
-        """`near` of each system's own orbit, each carried over from its neighbour; None where that fails."""
+        """Compute the first orbit of each system from that of its neighbour, and return its `near`.
+
+        Parameters
+        ----------
+        systems : sequence of mapping
+            Parameter values of each system.
+        neighbours : sequence of int or None
+            Index of an earlier system from which the orbit is carried over; None: the orbit is found without a neighbour.
+
+        Returns
+        -------
+        list
+            `near` of each orbit; None where no orbit was found.
+        """
         found: list[Near | None] = []
         for values, neighbour in zip(systems, neighbours):
             before = None if neighbour is None else found[neighbour]
@@ -221,7 +242,7 @@ class Family:
         return found
 
     def _carried(self, model: Varying, params: np.ndarray, near: Near) -> Orbit | None:
-        """The orbit at `params` from one nearby, both with the word of the latter."""
+        """Continue the orbit `near`, with its word, to the parameter vector `params`; None if it is not real on the way."""
         nodes, here, events, modes, periods = near
         word = model.word_of(events, modes, params)
         if word is None:
@@ -244,27 +265,31 @@ class Family:
 def swept_responses(
     model: Varying, over: str, values: Sequence[float], parameters: Mapping[str, float]
 ) -> list[tuple[float, float]]:
-    """Motions that simulations settle on: at each value those of a sweep up and one down, and those that drawn starts add, each followed both ways
-    to where another one takes over; the largest response is followed to its top, and for longer where it has no period.
+    """Simulate sweeps along a parameter and list the responses of all motions that are met.
+
+    1. One sweep goes up and one goes down through all values.
+    2. Random starts at three values add further motions; each is followed in both directions until it joins a motion that is listed already.
+    3. The largest response is simulated for longer if it has no period, and followed in smaller steps to its maximum.
 
     Parameters
     ----------
     model : Model or Machine
     over : str
+        The parameter that varies.
     values : sequence of float
         Ascending.
     parameters : mapping
-        Those that are no fields of the machine.
+        Values of parameters that are no fields of the machine.
 
     Returns
     -------
     list of (float, float)
-        Value and response (the measure that is shown); the latter may be no number.
+        Value and response (the default measure of the machine); a response may be nan.
 
     Raises
     ------
     SimulationError
-        If a motion runs away.
+        If a motion of a sweep grows without bound.
     """
     seen = _Seen(model, over, values, parameters)
     seen.run(range(len(values)), None, until_known=False)
@@ -274,7 +299,7 @@ def swept_responses(
         for start in population.starts(DRAWN, 0, values[k]):
             try:
                 row = seen.at(values[k], start)
-            except SimulationError:  # it runs away, or begins inside a wall
+            except SimulationError:  # the motion grows without bound, or begins inside a wall
                 continue
             if not seen.knows(row):
                 seen.rows.append(row)
@@ -287,7 +312,7 @@ def swept_responses(
 
 
 class _Seen:
-    """Motions that were met."""
+    """The motions that simulations have met so far (`rows`), and the steps of `swept_responses`."""
 
     def __init__(
         self, model: Varying, over: str, values: Sequence[float], parameters: Mapping[str, float]
@@ -298,7 +323,7 @@ class _Seen:
         self.rows: list[SweepRow] = []
 
     def at(self, value: float, start: Start, transient: float = USUAL) -> SweepRow:
-        """What a state leads to."""
+        """Simulate from `start` at one value; return the motion on which it settles."""
         ways = {"transient": transient, "exponents": False}
         (row,) = sweep(self.model, self.over, [value], start=start, **ways, **self.numbers)
         return row
@@ -307,7 +332,7 @@ class _Seen:
         return float(row.measures.get(self.measure, math.nan))
 
     def knows(self, row: SweepRow) -> bool:
-        """Whether a motion was met at this value already; of those without a period there is one."""
+        """Whether this motion is listed at its value already; all motions without a period count as one."""
         here, own = [other for other in self.rows if other.value == row.value], self.response(row)
         return any(
             abs(self.response(other) - own) <= DESIGNING.agreement * abs(own)
@@ -317,7 +342,7 @@ class _Seen:
         )
 
     def run(self, places: Sequence[int], start: Start, until_known: bool) -> None:
-        """Follow a motion along some of the values; to one that is known, if asked."""
+        """Follow a motion along values with the indices `places`; with `until_known`, stop at a motion that is listed already."""
         for k in places:
             row = self.at(self.values[k], start)
             if until_known and self.knows(row):
@@ -326,7 +351,7 @@ class _Seen:
             start = row.detail.state
 
     def confirm(self) -> None:
-        """Follow the largest response for longer as long as it is that of a motion without a period: it may be a transient that is slow to end."""
+        """Simulate the motion with the largest response for longer while it has no period, because it may be a slow transient."""
         while True:
             top = max(self.rows, key=lambda row: _number(self.response(row)))
             if top.periods:
@@ -337,8 +362,10 @@ class _Seen:
             self.rows[:] = [longer if row is top else row for row in self.rows]
 
     def climb(self) -> None:
-        """From the largest response on either way while it grows, in steps that are halved where it does not: a motion that steps of the values lose goes on
-        in smaller ones to where it ends."""
+        """Follow the largest response in both directions while it grows; halve the step where it does not.
+
+        The motion may continue beyond the values of the sweep at which it was lost, up to its end; smaller steps follow it there.
+        """
         span, spacing = self.values[-1] - self.values[0], self.values[1] - self.values[0]
         top = max(self.rows, key=lambda row: _number(self.response(row)))
         for side in (-1, 1):

@@ -1,7 +1,7 @@
-"""Design figures of an impact absorber in physical units, for one machine or a whole map of them.
+"""Design figures of an impact absorber in physical units, for one machine or for a grid of machines.
 
-Every field of `Design` may be an array; they broadcast, so that a map over friction and cavity length is
-one call:
+Every field of `Design` may be an array. The fields broadcast, so one call gives a map over friction and
+cavity length:
 
     Design(friction=mu[None, :], half_width=b[:, None]).operating_ratio
 
@@ -25,9 +25,10 @@ from orbits.theory import manifolds
 if TYPE_CHECKING:
     from orbits.arguments import Reals
 
-SCALE = (1e-9, 1e9)  # metres and hertz of a machine; squares and quotients stay far from overflow
-_AROUND = (1e-12, 1e12)  # of the maps drawn around it
-_LARGEST = 1e9
+# range of half-width [m] and natural frequency [Hz] of a machine; squares and quotients do not overflow
+SCALE = (1e-9, 1e9)
+_AROUND = (1e-12, 1e12)  # the same range for maps, whose axes extend beyond the machine's values
+_LARGEST = 1e9  # largest friction, mass ratio, damping and acceleration
 
 
 class Figure(NamedTuple):
@@ -47,16 +48,16 @@ class Design:
     Parameters
     ----------
     half_width : array_like
-        ``b`` [m], the clearance to either side: the absorber travels ``2 b`` from wall to wall. `cavity` is an older name of it.
+        ``b`` [m], the clearance to either side: the absorber travels ``2 b`` from wall to wall. `cavity` is an older name.
     natural_frequency : array_like
         ``f_0`` of the oscillator alone [Hz].
     restitution : array_like
         ``r``, in (0, 1].
     friction : array_like
-        Coulomb coefficient ``mu``.
+        Coefficient of dry friction ``mu``.
     mass_ratio : array_like
-        ``eps = m/M``. With it the bounds are those of the exact maps (``h~ = (1 + eps) h``); 0 gives the
-        paper's physical formulas, which leave it out.
+        ``eps = m/M``. The bounds are those of the exact maps (``h~ = (1 + eps) h``); 0 gives the physical
+        formulas of the paper, which neglect it.
     damping : array_like
         ``lambda = c/(m omega_0)``; the oscillator's damping ratio is ``eps lambda/2``.
     acceleration : array_like
@@ -109,16 +110,25 @@ class Design:
         cavity: float | None = None,
         **fields: Reals,
     ) -> Design:
-        """From ``g~ = g/(b omega_0^2)`` and one of the two scales; the other one follows.
+        """Make a design from ``g~ = g/(b omega_0^2)`` and either the half-width or the natural frequency; the other one follows.
+
+        Parameters
+        ----------
+        gravity : float
+            ``g~``, above 0.
+        half_width, natural_frequency : float, optional
+            Exactly one of them, in m or Hz. `cavity` is an older name of `half_width`.
+        **fields
+            The other fields of `Design`.
 
         Raises
         ------
         ValueError
-            If both scales or none are given, ``gravity`` is not positive, or a scale leaves `SCALE`.
+            If both scales or none are given, ``gravity`` is not positive, or a scale lies outside `SCALE`.
         """
         if half_width is not None and cavity is not None:
             raise ValueError("half_width and cavity say the same thing twice; leave cavity out.")
-        width = "half_width" if cavity is None else "cavity"  # in the user's word
+        width = "half_width" if cavity is None else "cavity"  # the name that the user wrote, for messages
         cavity = half_width if cavity is None else cavity
         if (cavity is None) == (natural_frequency is None):
             raise ValueError(
@@ -193,7 +203,7 @@ class Design:
 
     @property
     def operating_ratio(self) -> Reals:
-        """``xi = q1_max/q1_min``: width of the working range; inf for elastic walls without friction, whose threshold is 0."""
+        """``xi = q1_max/q1_min``: width of the working range; inf for elastic walls without friction, where the threshold is 0."""
         with np.errstate(divide="ignore"):
             return self.upper_bound / self.activation_threshold
 
@@ -201,8 +211,7 @@ class Design:
         """``q1_cr = mu g/omega^2`` [m] at an excitation frequency [Hz] (default ``f_0``): below it the
         absorber sticks.
 
-        Exact for the stuck machine: oscillator and absorber then move as one, and friction has to hold
-        ``m omega^2 q_1``.
+        Exact: oscillator and absorber then move as one, and the friction force needed is ``m omega^2 q_1``.
         """
         f = self.natural_frequency if frequency is None else np.asarray(frequency, dtype=float)
         return self.friction * self.acceleration / (2.0 * np.pi * f) ** 2
@@ -216,9 +225,9 @@ class Design:
         """Displacements [m] of the oscillator between which the absorber slides, without sticking or impacts, at an
         excitation frequency [Hz] (default ``f_0``).
 
-        ``b/(1 + eps)`` times the bounds of ``C``, in which friction counts as ``h/Omega^2``: what it has to beat grows with the
-        square of the frequency. The paper's lower value ``b h/(1 + eps)`` is too low, there the absorber still sticks at
-        every turn.
+        The bounds are ``b/(1 + eps)`` times the bounds of ``C``, with ``h/Omega^2`` in place of ``h``, because the force of inertia
+        grows with the square of the frequency. The lower value of the paper, ``b h/(1 + eps)``, is too low: there the absorber
+        still sticks at every turn.
         """
         ratio = 1.0 if frequency is None else np.asarray(frequency, dtype=float) / self.natural_frequency
         low, high = manifolds.sliding_bounds(self.level / ratio**2)
@@ -227,12 +236,12 @@ class Design:
 
     @property
     def absorber_damping(self) -> Reals:
-        """``eps (2/pi) R/(pi^2/4 + R^2)``: damping ratio that the impacts lend the oscillator at large
+        """``eps (2/pi) R/(pi^2/4 + R^2)``: damping ratio that the impacts add to the oscillator at large
         amplitude."""
         return self.mass_ratio * (2.0 / np.pi) * self.loss / (0.25 * np.pi**2 + self.loss**2)
 
     def linear_response(self, frequency: ArrayLike, excitation: ArrayLike, *, stuck: bool = False) -> Reals:
-        """Displacement amplitude [m] of the oscillator moved by a base motion ``E sin(omega t)``.
+        """Displacement amplitude [m] of the oscillator under a base motion ``E sin(omega t)``.
 
         Parameters
         ----------
@@ -241,7 +250,7 @@ class Design:
         excitation : array_like
             ``E`` [m].
         stuck : bool
-            With the absorber stuck to the cavity (mass ``M + m``) instead of without it.
+            If True, the absorber sticks to the cavity (mass ``M + m``); else the oscillator has no absorber.
         """
         ratio = np.asarray(frequency, dtype=float) / self.natural_frequency
         path = 1.0 + 1j * np.asarray(self.mass_ratio) * np.asarray(self.damping) * ratio
@@ -253,7 +262,7 @@ class Design:
         return np.asarray(forcing, dtype=float) * self.half_width * self.mass_ratio
 
     def is_stuck(self, frequency: ArrayLike, excitation: ArrayLike) -> NDArray[np.bool_]:
-        """Whether the linear response with the absorber stuck is one that friction can hold."""
+        """Whether friction can hold the absorber in the linear response with a stuck absorber."""
         return np.less_equal(
             self.linear_response(frequency, excitation, stuck=True), self.sticking_limit(frequency)
         )
@@ -276,7 +285,7 @@ class Design:
 
 
 def _older_name(init: Callable[..., None]) -> Callable[..., None]:
-    """`Design(cavity=...)` is `Design(half_width=...)`."""
+    """Wrap the constructor so that it accepts `cavity` as the older name of `half_width`."""
 
     @wraps(init)
     def known(self: Design, *values: Reals, **fields: Reals) -> None:
@@ -287,7 +296,7 @@ def _older_name(init: Callable[..., None]) -> Callable[..., None]:
         fields["half_width"] = fields.pop("cavity")
         try:
             init(self, *values, **fields)
-        except ValueError as error:  # in the user's word
+        except ValueError as error:  # the message uses the name that the user wrote
             raise ValueError(str(error).replace("half_width", "cavity", 1)) from None
 
     return known

@@ -1,7 +1,7 @@
-"""Transients of declared machines: from a state, or from rest while the excitation begins, at once or with a frequency that runs up.
+"""Transients of declared machines from a given state or from rest; the excitation begins at once or with a frequency that rises (run-up).
 
-`coupled_page` is the coupled machine as a declared one, the bare oscillator beside it, for excitations that closed forms do not know: the equations
-are those of `orbits.machines.coupled`, in its own numbers and counted as it counts; the bare oscillator is two further states.
+`coupled_page` declares the coupled machine together with the bare oscillator (two further states), for excitations without a closed form.
+Its equations, parameters and units are those of `orbits.machines.coupled`.
 """
 
 from __future__ import annotations
@@ -33,30 +33,31 @@ if TYPE_CHECKING:
     from orbits.symbols import Plain
 
 
-FIRST, LONGEST = 120, 1920  # forcing periods; as long as nothing has settled, twice as many are looked at
-PER_PERIOD = 80  # samples
-MOST_EVENTS = 1_000_000
+# shortest and longest simulation in forcing periods; the length is doubled until all states have settled
+FIRST, LONGEST = 120, 1920
+PER_PERIOD = 80  # samples per period
+MOST_EVENTS = 1_000_000  # in one simulation
 
 
 @dataclass(frozen=True, eq=False)
 class PageTransient:
-    """A simulated transient, in the units of the page.
+    """A simulated transient, in the units of the machine file.
 
     Attributes
     ----------
     times : float array (n,)
     states : dict of float array (n,)
-        By name.
+        Name -> values at `times`.
     largest : dict of float
-        The largest size of each state, at impacts and between the samples, too.
+        Name -> largest absolute value, including those between the samples.
     impact_times, impact_speeds, impulses : float array (k,)
-        Speeds in m/s and impulses in N s (of a declared machine without units in its own numbers); impulses only of a declared machine with an energy.
+        Times, speeds (m/s) and impulses (N s) of impacts; without units if the machine file has none. `impulses` is empty unless the machine declares its energy.
     settled : dict of float
-        Of each state: from when on the largest size of every period stays within 5 % of the last ones; nan where it does not settle.
+        Name -> time from which on the largest absolute value of every period stays within 5 % of that of the last periods; nan if the state does not settle.
     energy : float array (n,) or None
-        Of all bodies, of a declared machine that tells it.
+        Energy of all bodies; None unless the machine declares it.
     taken_times, impacts, friction : float array (m,)
-        Energy taken until these times by impacts and by friction; empty without an energy.
+        Energy that impacts and friction have dissipated until these times; empty unless the machine declares its energy.
     """
 
     times: np.ndarray
@@ -72,7 +73,7 @@ class PageTransient:
     friction: np.ndarray
 
     def share(self, time: float) -> float:
-        """Share of the initial energy that impacts and friction have taken until this time; nan where no energy is known."""
+        """Share of the initial energy that impacts and friction have dissipated until this time; nan without an initial energy."""
         if self.energy is None or not self.energy[0] > 0.0:
             return math.nan
         taken = np.interp(time, self.taken_times, self.impacts + self.friction)
@@ -88,23 +89,27 @@ def page_transient(
     run_up_time: float = 0.0,
     time: float | None = None,
 ) -> PageTransient:
-    """Simulate a machine from a state, at rest by default, from phase 0 on.
+    """Simulate a machine from a state (default: rest), beginning at phase 0.
 
     Parameters
     ----------
     machine : Machine
     params : float array (P,)
     start : mapping, optional
-        States by name.
+        State name -> value; other states are 0.
     run_up_from, run_up_time : float, optional
-        The frequency rises linearly from the first to the machine's own in so much time, and stays there.
+        Run-up: the frequency rises linearly from `run_up_from` to that of the machine during `run_up_time`, and then stays constant.
     time : float, optional
-        How long it is followed (after the run-up); by default until all has settled: 120 forcing periods, 240 ... 1920.
+        Duration of the simulation after the run-up. Default: until all states have settled, with 120, 240, ... 1920 forcing periods.
+
+    Returns
+    -------
+    PageTransient
 
     Raises
     ------
     SimulationError, PageError
-        If the start cannot be, or the motion does not go on; a self-excited machine needs a time.
+        If the start is impossible, the simulation fails, or `time` is missing for a self-excited machine.
     """
     if time is None and not machine.forced:
         raise SimulationError(f"{machine.name!r} is self-excited: say how long it is to be followed")
@@ -132,7 +137,7 @@ def page_transient(
 
 
 def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float]]) -> PageTransient:
-    """Runs one after the other; the number is to be added to each run's time."""
+    """Join runs to one transient; `legs` has the machine, the trajectory and the time shift of each run."""
     times, states, energy, taken = [], [], [], []
     hits: list[tuple[float, float, float]] = []
     largest = np.zeros(machine.size)
@@ -217,7 +222,7 @@ def _wall(letter: str, side: int) -> Wall:
 
 @cache
 def coupled_page() -> Machine:
-    """The machine; its parameters are those of `orbits.Coupled`."""
+    """Return the coupled machine and the bare oscillator as one declared machine, with the parameters of `orbits.Coupled`."""
     model, given = usual("coupled")
     floor = DryFriction(
         "floor", lambda s, phase, p: s.v1 - s.v2, lambda s, phase, p: p.friction * p.gravity * cos(p.slope)

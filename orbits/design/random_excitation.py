@@ -1,9 +1,10 @@
-"""Random excitation by a spectral density: a signal of many harmonics with random phases, and the responses to it.
+"""Random excitation with a given spectral density: signals of many harmonics with random phases, and the responses to them.
 
-Densities are one-sided: the variance of a signal is the integral of its density over the frequency from 0 on. A signal of N instants has all harmonics of its
-length T, each with the amplitude sqrt(2 S(Omega) 2 pi/T) and a phase drawn evenly (Shinozuka, Deodatis, Applied Mechanics Reviews 44 (1991) 191): its density
-is kept exactly, and linear responses have exact variances over T. Between instants it runs linearly (of declared machines: it is held), which `hold` of the amplitudes makes up for.
-White noise with E[xi(t) xi(t')] = 2 D delta(t - t') has the one-sided density S = 2 D/pi per radian a unit of time, 4 D per hertz.
+Densities are one-sided: the variance of a signal is the integral of its density over frequencies from 0 to infinity. A signal with N instants
+contains all harmonics of its length T, each with the amplitude sqrt(2 S(Omega) 2 pi/T) and a uniformly distributed random phase (Shinozuka,
+Deodatis, Applied Mechanics Reviews 44 (1991) 191). So every signal has exactly the given density, and linear responses have exact variances over T.
+Between the instants the signal is linear (for declared machines: constant); the factor `hold` of the amplitudes compensates this interpolation.
+White noise with E[xi(t) xi(t')] = 2 D delta(t - t') has the one-sided density S = 2 D/pi per radian per unit of time, or 4 D per hertz.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ from orbits.machines.parameters import ParameterError
 if TYPE_CHECKING:
     from orbits.machines.base import Model
 
-INSTANTS = 20  # of the shortest period
-PERIODS = 2000  # of a record, in radians of the middle of the density over 2 pi
-RECORDS = 8
-LINES = 200  # of a response's density: the mean over as many neighbouring harmonics as that takes
-WARM = 6.0  # time constants that are left out
-LONGEST = 2_000_000  # instants of a record
+INSTANTS = 20  # instants of a signal per period of the highest frequency
+PERIODS = 2000  # length of a record, in periods of the mean frequency of the density
+RECORDS = 8  # independent records
+LINES = 200  # values of a response's density; each is the mean over neighbouring harmonics
+WARM = 6.0  # time constants of the oscillator before the record begins
+LONGEST = 2_000_000  # most instants of a record
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class Density:
     Attributes
     ----------
     frequencies, values : float array (m,)
-        Radians a unit of time, ascending; (what is excited)^2 per radian a unit of time.
+        Frequencies in radians per unit of time, ascending, and densities in (unit of the signal)^2 per radian per unit of time.
     """
 
     frequencies: np.ndarray
@@ -62,21 +63,26 @@ class Density:
 
     @property
     def variance(self) -> float:
-        """Of the signal."""
+        """Variance of the signal."""
         return float(np.trapezoid(self.values, self.frequencies))
 
     @property
     def step(self) -> float:
-        """Time from one instant to the next."""
+        """Time between two instants of a signal."""
         return TWO_PI / (INSTANTS * float(self.frequencies[-1]))
 
     def grid(self, periods: float) -> tuple[int, np.ndarray]:
-        """How many instants a record has, and its harmonics' frequencies.
+        """Return the number of instants of a record and the frequencies of its harmonics.
+
+        Parameters
+        ----------
+        periods : float
+            Length of the record, in periods of the mean frequency.
 
         Raises
         ------
         ParameterError
-            If they are too many.
+            If there are fewer than 16 instants or more than `LONGEST`.
         """
         centre = float(np.trapezoid(self.values * self.frequencies, self.frequencies)) / self.variance
         count = 2 * math.ceil(0.5 * periods * TWO_PI / centre / self.step)
@@ -85,7 +91,7 @@ class Density:
         return count, np.arange(count // 2 + 1) * TWO_PI / (count * self.step)
 
     def harmonics(self, omega: np.ndarray, generator: np.random.Generator) -> np.ndarray:
-        """Complex amplitudes of a draw at the harmonics."""
+        """Draw the complex amplitudes of one signal at the harmonics `omega`."""
         size = np.sqrt(2.0 * self(omega) * omega[1])
         return size * np.exp(1j * generator.uniform(0.0, TWO_PI, omega.size))
 
@@ -97,22 +103,24 @@ def _signal(amplitudes: np.ndarray, count: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class RandomResponse:
-    """Statistics over records; each number is (mean, standard error over the records).
+    """Statistics of the response over all records.
 
     Attributes
     ----------
     numbers : dict of (float, float)
-        ``rms_oscillator``, ``peak_oscillator`` (mean of the records' largest), ``rms_relative``, ``impact_rate``, ``absorber_power`` (per unit of M omega_0^3 b^2), ``absorber_share``,
-        and ``rms_bare``, ``peak_bare``, ``rms_tuned``, ``peak_tuned``; of a declared machine ``mean_``, ``rms_`` and ``peak_`` of each state, ``impact_rate``.
+        Name -> (mean, standard error over the records). For a machine with an oscillator: ``rms_oscillator``, ``peak_oscillator`` (mean over the
+        records of the largest value), ``rms_relative``, ``impact_rate``, ``absorber_power`` (in units of M omega_0^3 b^2), ``absorber_share``,
+        ``rms_bare``, ``peak_bare``, ``rms_tuned``, ``peak_tuned``. For a declared machine: ``mean_``, ``rms_`` and ``peak_`` of each state, and ``impact_rate``.
     omega : float array (k,)
-        Frequencies of densities.
+        Frequencies of the densities.
     densities : dict of float array (k,)
-        One-sided densities of displacements by name (``oscillator``, ``bare``, ``tuned``; the states of a declared machine).
+        One-sided densities of displacements by name (``oscillator``, ``bare``, ``tuned``; for a declared machine its states).
     duration : float
-        Of one record.
+        Length of one record.
     records : int
+        Number of records.
     samples : dict of float array
-        Of a declared machine: all states at all instants of all records, by name.
+        For a declared machine: state name -> values at all instants of all records.
     """
 
     numbers: dict[str, tuple[float, float]]
@@ -132,7 +140,7 @@ def random_base(
     records: int = RECORDS,
     seed: int = 0,
 ) -> RandomResponse:
-    """The answer of a machine with an oscillator to a random motion of its base, beside the bare oscillator and a tuned absorber of the same mass.
+    """Simulate a machine with an oscillator under a random base motion, and compare with the bare oscillator and a tuned absorber of the same mass.
 
     Parameters
     ----------
@@ -140,16 +148,20 @@ def random_base(
         A machine with an oscillator (`orbits.Coupled`).
     params : float array (P,)
     psd : Density
-        Of the base's acceleration, in half-widths times omega_0^2, per omega_0.
+        Density of the base's acceleration; acceleration in half-widths times omega_0^2, frequency in omega_0.
     periods : float
-        Of one record, of the density's mean frequency.
+        Length of one record, in periods of the mean frequency of the density.
     records, seed : int
-        Independent draws, and the seed of their generator.
+        Number of independent records, and the seed of the random generator.
+
+    Returns
+    -------
+    RandomResponse
 
     Raises
     ------
     ParameterError
-        If the machine has no oscillator, or the numbers cannot be.
+        If the machine has no oscillator or no damping, or a number is out of range.
     """
     numbers = oscillator_numbers(model, params)
     eps, rate = numbers["mass_ratio"], numbers["mass_ratio"] * numbers["damping"]
@@ -179,12 +191,12 @@ def random_base(
         row["absorber_share"] = seen.absorber_share
         return row, spectra
 
-    # instants are joined by straight lines
+    # the signal is linear between the instants
     return _over_records(psd, count, omega, records, seed, np.sinc(omega * step / TWO_PI) ** 2, answer)
 
 
 def transfer(omega: np.ndarray, rate: float, mass: float) -> np.ndarray:
-    """Displacement of the oscillator from its base per acceleration of the base; with `mass` > 0 it carries Den Hartog's absorber."""
+    """Complex displacement of the oscillator from its base per acceleration of the base; with `mass` > 0 it carries Den Hartog's tuned absorber."""
     x, carried = compliance(omega, rate, mass, tuning(mass))
     return -(1.0 + mass * carried) * x
 
@@ -201,24 +213,33 @@ def random_page(
     seed: int = 0,
     warm: float = 0.1,
 ) -> RandomResponse:
-    """The answer of a declared machine one of whose parameters is random.
+    """Simulate a declared machine while one of its parameters varies at random.
 
     Parameters
     ----------
     machine : Machine
     params : float array (P,)
     excited : str
-        The parameter to whose value the signal is added; it is held from instant to instant. Gaps, surfaces and velocities of contacts must not depend on it.
+        The parameter to whose value the signal is added; it is constant between instants. Gaps, surfaces and velocities of contacts must not depend on it.
     psd : Density
-        Of the parameter, counted in its own unit, per radian a unit of time.
-    start, periods, records, seed
-        As for `random_base`; every record begins at the start.
+        Density of the parameter, in its own unit, per radian per unit of time.
+    start : mapping, optional
+        State in which every record begins: name -> value; other states are 0.
+    periods, records, seed
+        As for `random_base`.
     warm : float
-        Share of a record that is simulated beforehand and left out.
+        Time that is simulated before the record begins, relative to its length.
+
+    Returns
+    -------
+    RandomResponse
 
     Raises
     ------
-    ParameterError, SimulationError
+    ParameterError
+        If the parameter sets the clock or a contact depends on it, or a number is out of range.
+    SimulationError
+        If `start` has an unknown state, or a simulation fails.
     """
     place = machine.place_of(excited)
     if excited == machine.phase_rate:
@@ -247,7 +268,7 @@ def random_page(
         spectra = np.fft.rfft(table - table.mean(axis=0), axis=0) * (2.0 / count)
         return row, dict(zip(machine.states, spectra.T))
 
-    # values are held from instant to instant
+    # the signal is constant between the instants
     found = _over_records(psd, count, omega, records, seed, np.sinc(omega * psd.step / TWO_PI), answer)
     return replace(found, samples=dict(zip(machine.states, np.concatenate(kept).T)))
 
@@ -260,7 +281,7 @@ def _follow(
     step: float,
     start: Mapping[str, float],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """States at the instants, shape (m, n), and times of impacts."""
+    """Simulate a machine whose parameter `place` follows the signal; return the states at the instants, shape (m, n), and the times of impacts."""
     numbers = np.array(params)
     stepper = Stepper(machine, numbers)
     clock = float(machine.phase_speed(params)) * step
@@ -295,10 +316,10 @@ def _over_records(
     hold: np.ndarray,
     answer: Callable[[np.ndarray, np.ndarray], tuple[Numbers, Lines]],
 ) -> RandomResponse:
-    """Means and standard errors over records that are drawn.
+    """Draw signals, simulate the responses, and return means and standard errors over the records.
 
-    ``answer(amplitudes, signal)`` has numbers of a record, squares for `rms_...`, and complex amplitudes of displacements at the harmonics; amplitudes
-    of the signal are divided by `hold`.
+    ``answer(amplitudes, signal)`` simulates one record. It returns the record's numbers (squares for those named `rms_...`) and the complex amplitudes of
+    displacements at the harmonics. The amplitudes of the signal are divided by `hold`, which compensates the interpolation between instants.
     """
     if not 2 <= records <= 10_000:
         raise ParameterError(f"records = {records}: expected 2 to 10000; error bars need two or more")

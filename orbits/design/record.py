@@ -1,12 +1,13 @@
-"""The answer to a recorded motion of the base, a shock for example.
+"""Response of a machine to a recorded motion of its base, for example a shock.
 
-The record is the base's acceleration at instants and runs linearly between them; relative to the base the machine is
+The record holds the base's acceleration at given instants; it is linear between them. Relative to the base the equations of motion are
 
     x1'' + eps lambda x1' + x1 = -e'' - eps mu g S,    x2'' = -e'' + mu g S,    w = x1 - x2,
 
-with constant S between events, so that the oscillator's motion is a decaying oscillation about a straight line and the absorber's a cubic:
-exact from instant to instant, events bracketed in steps of a hundredth of the natural period and found to roundoff. Impacts that pile up on a
-wall end in contact that lasts: both then move as one until friction no longer holds what the wall cannot pull.
+with S constant between events. So the oscillator's motion is a decaying oscillation about a straight line and the absorber's motion is a cubic,
+both exact between instants. Events are bracketed in steps of a hundredth of the natural period and located to roundoff. Impacts that accumulate at a
+wall end in lasting contact: oscillator and absorber then move as one until the force that holds the absorber, which the wall cannot pull,
+exceeds the friction.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
-MOST_EVENTS = 20_000  # in a hundredth of the natural period
-SLICE = 20_000  # rows of one call of the native core
-BAND = 0.05  # share of its last size within which a response has settled
+MOST_EVENTS = 20_000  # most events in one step of a hundredth of the natural period
+SLICE = 20_000  # rows computed by one call of the native core; interrupts are handled between calls
+BAND = 0.05  # largest deviation of a settled response's size, relative to its final size
 
 
 class Dissipation:
-    """What impacts, friction and the oscillator's own damping have taken until the end of a motion."""
+    """Energy that impacts, friction and the oscillator's own damping have dissipated until the end of a motion."""
 
     impacts: float
     friction: float
@@ -41,23 +42,23 @@ class Dissipation:
 
     @property
     def absorber_share(self) -> float:
-        """Share of what is dissipated that impacts and friction take."""
+        """Energy dissipated by impacts and friction, relative to all dissipated energy; nan if none is dissipated."""
         lost = self.impacts + self.friction + self.damping
         return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
 
 
 @dataclass(frozen=True, eq=False)
 class Response(Dissipation):
-    """The answer to a recorded motion of the base, in the machine's own units.
+    """Response to a recorded motion of the base, in the machine's own units.
 
     Attributes
     ----------
     times : float array (n,)
     oscillator, relative, bare : float array (n,)
-        Displacement x1 of the oscillator from the base, w = x1 - x2, and x1 of the oscillator without absorber.
+        Displacement x1 of the oscillator from the base, w = x1 - x2, and x1 of an oscillator without absorber.
     impacts, friction, damping : float
-        Dissipated, in the unit of x1'^2.
-    impact_times : float array
+        Dissipated energies, in the unit of x1'^2.
+    impact_times : float array (k,)
     """
 
     times: np.ndarray
@@ -76,12 +77,12 @@ class Response(Dissipation):
 
     @property
     def bare_peak(self) -> float:
-        """The same without absorber."""
+        """Largest displacement of an oscillator without absorber."""
         return float(np.abs(self.bare).max())
 
 
 def oscillator_numbers(model: Varying, params: np.ndarray) -> dict[str, float]:
-    """The parameters of a machine with an oscillator by name; a `ParameterError` for any other machine."""
+    """Return the parameters of a machine with an oscillator by name; raise a `ParameterError` for any other machine."""
     numbers = model.named(params)
     if "damping" not in numbers:
         raise ParameterError(f"the machine {model.name!r} has no oscillator on a base")
@@ -91,7 +92,7 @@ def oscillator_numbers(model: Varying, params: np.ndarray) -> dict[str, float]:
 def recorded(
     model: Model, params: np.ndarray, times: np.ndarray, acceleration: np.ndarray, tail: float = 0.0
 ) -> Response:
-    """The answer of the machine, from rest, to a recorded acceleration of its base.
+    """Simulate the machine, from rest, under a recorded acceleration of its base.
 
     Parameters
     ----------
@@ -101,14 +102,18 @@ def recorded(
     times : float array (n,)
         Ascending, in 1/omega_0.
     acceleration : float array (n,)
-        Of the base, in half-widths times omega_0^2; linear between the instants.
+        Acceleration of the base, in half-widths times omega_0^2; linear between the instants.
     tail : float
-        How long the motion is followed after the last instant, the base unaccelerated.
+        Time that is simulated after the last instant, without acceleration of the base.
+
+    Returns
+    -------
+    Response
 
     Raises
     ------
     ParameterError
-        If the machine has no oscillator, or the record cannot be.
+        If the machine has no oscillator or an inclined cavity, if the record is not valid, or if there are too many events.
     """
     times, acceleration = np.asarray(times, dtype=float), np.asarray(acceleration, dtype=float)
     if times.ndim != 1 or times.shape != acceleration.shape or times.size < 2:
@@ -146,7 +151,7 @@ def recorded(
 
 
 def _drift(x, v, mass, rate, force, slope, t):
-    """Displacement and speed after t of mass x'' + rate x' + x = force + slope t."""
+    """Return displacement and speed after time t of mass x'' + rate x' + x = force + slope t."""
     alpha = 0.5 * rate / mass
     beta = math.sqrt(1.0 / mass - alpha * alpha)
     offset = force - rate * slope
@@ -158,7 +163,7 @@ def _drift(x, v, mass, rate, force, slope, t):
 
 
 def _at(state, mode, rate, eps, pull, a0, a1, t):
-    """(x1, v1, x2, v2) after t in a mode: -1, +1 slide, 0 stick; the base's acceleration is a0 + a1 t."""
+    """Return (x1, v1, x2, v2) after time t in a mode (-1, +1: sliding; 0: sticking), with the base's acceleration a0 + a1 t."""
     x1, v1, x2, v2 = state
     if mode == 0:
         y, yr = _drift(x1, v1, 1.0 + eps, rate, -(1.0 + eps) * a0, -(1.0 + eps) * a1, t)
@@ -169,7 +174,7 @@ def _at(state, mode, rate, eps, pull, a0, a1, t):
 
 
 def _watch(state, mode, rate, eps, pull, a0, a1, t, what):
-    """What vanishes at an event: 0, 1 the walls, 2 the relative speed, 3, 4 the reserve of friction while stuck."""
+    """Return the function that vanishes at event `what` after time t: 0, 1 distances to the walls; 2 relative speed; 3, 4 margins of friction while sticking."""
     x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, t)
     if what == 0:
         return 1.0 - (x1 - x2)
@@ -177,12 +182,12 @@ def _watch(state, mode, rate, eps, pull, a0, a1, t, what):
         return 1.0 + (x1 - x2)
     if what == 2:
         return mode * (v1 - v2)
-    need = -(rate * v1 + x1) / (1.0 + eps)  # relative to inertia: x2'' + e'' while stuck
+    need = -(rate * v1 + x1) / (1.0 + eps)  # x2'' + e'' while stuck: friction force per absorber mass
     return pull - need if what == 3 else pull + need
 
 
 class _State(ctypes.Structure):
-    """Where the march stands; `RecordState` of `native/record.hpp`."""
+    """State of the integration between two calls of the native core; `RecordState` of `native/record.hpp`."""
 
     _fields_: ClassVar = [
         *((name, NUMBER) for name in ("x1", "v1", "x2", "v2", "bare", "bare_rate")),
@@ -200,7 +205,7 @@ def _march(
     hits: np.ndarray,
     lost: np.ndarray,
 ) -> int:
-    """`_march_plainly` by the native core where there is one, slice by slice: in between an interrupt is seen."""
+    """Do `_march_plainly` with the native core if there is one, in slices, so that an interrupt is handled between calls."""
     if not native():
         return _march_plainly(times, acceleration, steps, machine, out, hits, lost)
     arrays = [np.ascontiguousarray(x, dtype=float) for x in (times, acceleration)]
@@ -234,10 +239,10 @@ def _march_plainly(
     hits: np.ndarray,
     lost: np.ndarray,
 ) -> int:
-    """Through the record; fills rows (time, x1, w, bare x1), times of impacts and (impacts, friction, damping).
+    """Integrate the whole record; fill `out` with rows (time, x1, w, bare x1), `hits` with times of impacts, `lost` with dissipated energies (impacts, friction, damping).
 
-    While the mode is 0 (both move as one), `wall` is +1 or -1 where the absorber lies against the left or right wall, which only pushes.
-    The result is the number of impacts, or -1 where events have no end.
+    While the mode is 0 (both masses move as one), `wall` is +1 or -1 if the absorber lies against the left or right wall, which only pushes, else 0.
+    Return the number of impacts, or -1 if one step has more than `MOST_EVENTS` events.
     """
     rate, eps, pull, r = machine
     state = (0.0, 0.0, 0.0, 0.0)
@@ -263,7 +268,7 @@ def _march_plainly(
                 lowest = 3 if mode == 0 else 0
                 for what in range(lowest, 5 if mode == 0 else (3 if pull > 0.0 else 2)):
                     if mode == 0 and ((what == 3 and wall == 1) or (what == 4 and wall == -1)):
-                        continue  # the wall holds against this
+                        continue  # the wall supports the absorber on this side
                     if _watch(state, mode, rate, eps, pull, a0, a1, first, what) >= 0.0:
                         continue
                     low, high = 0.0, first
@@ -316,13 +321,16 @@ def _march_plainly(
 
 
 def settled(times: np.ndarray, motion: np.ndarray, periods: int) -> float:
-    """From when on the largest displacement of every period is close to that of the last quarter; nan if that is not even.
+    """Return the time from which on the largest displacement of every period stays within `BAND` of the final one; nan if it does not settle.
+
+    The final value is the mean over the last quarter of the periods, which itself must be steady.
 
     Parameters
     ----------
     times, motion : float array (n,)
-        Evenly spaced over so many `periods`, from time 0.
+        Evenly spaced, from time 0.
     periods : int
+        Number of periods that they cover.
     """
     sizes = np.array([np.abs(part).max() for part in np.array_split(motion, periods)])
     last = sizes[-max(1, periods // 4) :]

@@ -1,6 +1,6 @@
-"""Responses to compare with (bare oscillator, tuned absorber of the same mass, plain friction damper), and a first clearance by theory.
+"""Reference responses for comparison (bare oscillator, tuned absorber of the same mass, friction damper), and a first clearance by theory.
 
-Of each response the largest displacement of the oscillator under the same excitation, in closed form.
+Each reference response is the displacement amplitude of the oscillator under the same excitation, in closed form.
 """
 
 from __future__ import annotations
@@ -31,20 +31,28 @@ NAMES = {
 def compliance(
     omega: np.ndarray, rate: float, mass: float = 0.0, tuned_to: tuple[float, float] = (1.0, 0.0)
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Complex displacement of the oscillator per force on it (over its mass), and of the tuned absorber of this mass ratio per that of the oscillator.
+    """Return two complex frequency responses of an oscillator with a tuned absorber.
 
     Parameters
     ----------
     omega : float array
+        Frequencies, relative to the natural one.
     rate : float
         Damping coefficient over the oscillator's mass, eps lambda.
     mass : float
-        0 without an absorber.
+        Mass ratio of the tuned absorber; 0 for none.
     tuned_to : (float, float)
         As for `tuned`.
+
+    Returns
+    -------
+    complex array
+        Displacement of the oscillator per force on it over its mass.
+    complex array
+        Displacement of the absorber relative to that of the oscillator.
     """
     f, zeta = tuned_to
-    link = f * f + 2.0j * zeta * omega  # of spring and damper, over the absorber's mass
+    link = f * f + 2.0j * zeta * omega  # complex stiffness of spring and damper, over the absorber's mass
     carried = link / (link - omega**2) if mass else np.zeros_like(link)
     return 1.0 / (1.0 - omega**2 + 1j * rate * omega - mass * omega**2 * carried), carried
 
@@ -52,9 +60,9 @@ def compliance(
 def bare(
     frequency: ArrayLike, forcing: float, damping: float, mass_ratio: float, excitation: float = 1.0
 ) -> np.ndarray:
-    """Amplitude of the oscillator alone, in half-widths.
+    """Amplitude of the oscillator without absorber, in half-widths.
 
-    q1'' + eps lambda q1' + q1 = e + chi eps lambda e',  e = eps G sin(Omega tau): a force of one amplitude for chi = 0.
+    q1'' + eps lambda q1' + q1 = e + chi eps lambda e',  e = eps G sin(Omega tau); with chi = 0 a force whose amplitude does not depend on the frequency.
 
     Parameters
     ----------
@@ -70,23 +78,23 @@ def bare(
 def _force(
     omega: np.ndarray, forcing: float, rate: float, mass_ratio: float, excitation: float
 ) -> np.ndarray:
-    """e + chi eps lambda e' of `bare`, complex."""
+    """Complex amplitude of the force e + chi eps lambda e' of `bare`."""
     return mass_ratio * forcing * (1.0 + 1j * excitation * rate * omega)
 
 
 def tuning(mass_ratio: float) -> tuple[float, float]:
-    """Den Hartog's tuned absorber on an undamped oscillator: frequency over that of the oscillator, and damping ratio.
+    """Tuning of Den Hartog's absorber on an undamped oscillator: frequency relative to that of the oscillator, and damping ratio.
 
-    f = 1/(1 + mu) makes the two fixed points of the response equally high; zeta^2 = 3 mu/(8 (1 + mu)^3) is the mean of the two values that
-    make one of them a maximum; zeta is c/(2 m omega_0). Source: J. P. Den Hartog, Mechanical Vibrations (1956), section 3.3.
+    f = 1/(1 + mu) makes the two fixed points of the response equally high. zeta^2 = 3 mu/(8 (1 + mu)^3), with zeta = c/(2 m omega_0), is the mean of
+    the two values for which one fixed point is a maximum. Source: J. P. Den Hartog, Mechanical Vibrations (1956), section 3.3.
     """
     return 1.0 / (1.0 + mass_ratio), math.sqrt(3.0 * mass_ratio / (8.0 * (1.0 + mass_ratio) ** 3))
 
 
 def fixed_points(mass_ratio: float) -> tuple[float, float]:
-    """The two frequencies at which the response of the tuned absorber does not depend on its damping (undamped oscillator).
+    """Two frequencies at which the response does not depend on the damping of the tuned absorber (undamped oscillator).
 
-    Omega^2 = (1 -+ sqrt(mu/(2 + mu)))/(1 + mu), where the amplification of a force is sqrt(1 + 2/mu).
+    Omega^2 = (1 -+ sqrt(mu/(2 + mu)))/(1 + mu); the response to a force is there sqrt(1 + 2/mu) times the static one.
     """
     share = math.sqrt(mass_ratio / (2.0 + mass_ratio))
     low, high = ((1.0 - share) / (1.0 + mass_ratio), (1.0 + share) / (1.0 + mass_ratio))
@@ -101,16 +109,16 @@ def tuned(
     excitation: float = 1.0,
     tuned_to: tuple[float, float] | None = None,
 ) -> np.ndarray:
-    """Amplitude of the oscillator with a tuned absorber of mass ratio eps in place of the cavity, in half-widths.
+    """Amplitude of the oscillator with a tuned absorber instead of the impact absorber, in half-widths.
 
     Parameters
     ----------
     frequency : array_like
+        Omega.
     forcing, damping, mass_ratio, excitation : float
-        As for `bare`.
+        As for `bare`; the tuned absorber has the mass ratio eps.
     tuned_to : (float, float), optional
-        Frequency over the oscillator's, and damping coefficient over twice the absorber's mass times the oscillator's frequency;
-        Den Hartog's (`tuning`) by default.
+        Frequency of the absorber relative to that of the oscillator, and damping ratio c/(2 m omega_0); default: Den Hartog's (`tuning`).
     """
     omega, rate = np.asarray(frequency, dtype=float), mass_ratio * damping
     carrying, _ = compliance(omega, rate, mass_ratio, tuned_to or tuning(mass_ratio))
@@ -125,12 +133,12 @@ def friction_damper(
     pull: float,
     excitation: float = 1.0,
 ) -> np.ndarray:
-    """Amplitude of the oscillator with a mass that slides or sticks on it, no walls, in half-widths.
+    """Amplitude of the oscillator with a mass that slides or sticks on it, without walls, in half-widths.
 
-    While friction (`pull` = mu g) holds, both move as one. Beyond, the first harmonic of the friction force is taken: with speed v of
-    the oscillator and absorber's relative speed u, the absorber's equation gives its amplitude as (4/pi) pull/Omega and its phase by
-    u^2 = v^2 - that^2, so that the oscillator sees eps times a complex mass that depends on its amplitude (first order in the harmonics, as
-    in Den Hartog's one-term solution).
+    While friction (`pull` = mu g) holds the mass, both move as one. Beyond, the friction force is replaced by its first harmonic (harmonic
+    balance, as in Den Hartog's one-term solution). The absorber then moves with the speed amplitude s = (4/pi) pull/Omega; with the speed
+    amplitude v of the oscillator, that of the relative motion is u with u^2 = v^2 - s^2. So the absorber acts on the oscillator as a
+    complex mass that depends on the amplitude.
     """
     omega = np.atleast_1d(np.asarray(frequency, dtype=float))
     force = np.abs(_force(omega, forcing, mass_ratio * damping, mass_ratio, excitation))
@@ -144,7 +152,7 @@ def friction_damper(
 
 
 def _sliding(omega: float, force: float, drag: float, eps: float, own: float) -> float:
-    """The amplitude q that balances `force` while the mass slides."""
+    """Solve for the amplitude q at which the response balances `force` while the mass slides; inf without a solution."""
 
     def missing(q: float) -> float:
         share = min(own / (q * omega**2), 1.0)
@@ -162,12 +170,24 @@ def _sliding(omega: float, force: float, drag: float, eps: float, own: float) ->
 
 
 def reference(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
-    """One of `KINDS` at parameter vectors (m, P) of a machine with an oscillator, in half-widths, shape (m,).
+    """Return one reference response of a machine with an oscillator, in half-widths.
+
+    Parameters
+    ----------
+    kind : str
+        One of `KINDS`.
+    model : Model
+    params : float array (m, P)
+        Parameter vectors.
+
+    Returns
+    -------
+    float array (m,)
 
     Raises
     ------
     ValueError
-        If there is no such kind.
+        If the kind is unknown.
     """
     if kind not in KINDS:
         raise ValueError(f"{kind!r} is no response to compare with; choose one of {', '.join(KINDS)}")
@@ -186,18 +206,19 @@ def reference(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class FirstClearance:
-    """Half-widths by theory, in the machine's units of length.
+    """Half-widths of the cavity by theory, in the machine's units of length.
 
     Attributes
     ----------
     linear_peak : float
-        Of the oscillator at resonance, the absorber held fast.
+        Amplitude of the oscillator at resonance with the absorber fixed to it.
     widest : float
-        The best half-width where the absorber is at work (`orbits.multiple_scales.best_clearance`): wider ones are not entered at resonance.
+        The best half-width with a working absorber (`orbits.theory.multiple_scales.best_clearance`); in wider cavities the working motion
+        does not exist at resonance.
     remaining : float
-        The oscillator's amplitude at resonance that is left there.
+        Amplitude of the oscillator at resonance with the half-width `widest`.
     entered : float
-        Below this half-width the absorber cannot stay calm at resonance: the oscillator's linear peak moves the walls as far as an absorber
+        Below this half-width the absorber cannot stay calm at resonance: the linear peak of the oscillator moves the walls up to an absorber
         that stands still in space.
     """
 
@@ -208,15 +229,15 @@ class FirstClearance:
 
     @property
     def safe(self) -> float:
-        """The half-width to begin with: the best one that is entered from every start."""
+        """Half-width for a first design: the best one at which the absorber works from every start."""
         return min(self.widest, self.entered)
 
 
 def first_clearance(model: Model, params: np.ndarray) -> FirstClearance | None:
-    """Half-widths by theory; None for a machine without an oscillator or damping, with an inclined cavity, or whose absorber loses nothing at the walls.
+    """Return half-widths by theory; None for a machine without oscillator or damping, with an inclined cavity, or with elastic or perfectly inelastic walls.
 
-    With F/k = eps G and 2 D = eps lambda/sqrt(1 + eps) the linear peak is F/(2 D k) = G sqrt(1 + eps)/lambda half-widths; it does not
-    depend on the half-width in lengths. Friction is left out.
+    With F/k = eps G and 2 D = eps lambda/sqrt(1 + eps) the linear peak is F/(2 D k) = G sqrt(1 + eps)/lambda half-widths; as a length
+    it does not depend on the half-width. Friction is neglected.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""Between SI units and the dimensionless coupled machine.
+"""Conversion between SI units and the dimensionless coupled machine.
 
-Lengths are counted in half-widths b of the cavity, times in 1/omega_0 with omega_0 = sqrt(k/M):
+The unit of length is the half-width b of the cavity, the unit of time 1/omega_0 with omega_0 = sqrt(k/M):
 
     eps = m/M,   lambda = c/(m omega_0),   g~ = g/(b omega_0^2),   G = E/(b eps),   Omega = 2 pi f/omega_0.
 
@@ -31,9 +31,9 @@ class Scales:
     half_width : float
         b in m, above 0: from the middle of the cavity to either wall, counted to the absorber's faces.
     stiffness : float, optional
-        k in N/m, above 0. Instead of it, or in agreement with it:
+        k in N/m, above 0.
     natural_frequency : float, optional
-        omega_0/(2 pi) in Hz, above 0, of the oscillator without the absorber.
+        omega_0/(2 pi) in Hz, above 0, of the oscillator without the absorber; instead of `stiffness`, or in agreement with it.
     damping : float
         c in N s/m, 0 or above.
     friction, restitution : float
@@ -46,7 +46,7 @@ class Scales:
     Raises
     ------
     ParameterError
-        For values that make no sense or contradict each other; the sentence names field, value and way out.
+        If a value is out of range, or values contradict each other; the message names the field, the value and a way out.
     """
 
     oscillator_mass: float
@@ -106,7 +106,7 @@ class Scales:
 
     # ------------------------------------------------------------------ SI -> dimensionless
     def frequency(self, hertz: float) -> float:
-        """Omega of a frequency in Hz.
+        """Return Omega for a frequency in Hz.
 
         Raises
         ------
@@ -116,11 +116,11 @@ class Scales:
         return 2.0 * math.pi * _checked("frequency", hertz, "Hz") / self.omega_0
 
     def detuning(self, hertz: float) -> float:
-        """sigma = (Omega - 1)/eps of a frequency in Hz."""
+        """Return sigma = (Omega - 1)/eps for a frequency in Hz."""
         return (self.frequency(hertz) - 1.0) / self.mass_ratio
 
     def forcing(self, base_amplitude: float) -> float:
-        """G of a base amplitude in m."""
+        """Return G for a base amplitude in m."""
         return _checked("base_amplitude", base_amplitude, "m", NOT_NEGATIVE) / (
             self.half_width * self.mass_ratio
         )
@@ -131,21 +131,21 @@ class Scales:
         base_amplitude: float | None = None,
         excitation: str | float = "exact",
     ) -> Coupled:
-        """The dimensionless machine.
+        """Return the dimensionless machine.
 
         Parameters
         ----------
         hertz : float, optional
-            Excitation frequency in Hz; default the natural frequency.
+            Excitation frequency in Hz; default: the natural frequency.
         base_amplitude : float, optional
-            E in m; default that of the scales; without either the forcing is left open.
+            E in m; default: that of the scales. If neither is given, the machine has no value of the forcing.
         excitation : {"exact", "truncated"} or float
             See `Coupled`.
 
         Raises
         ------
         ParameterError
-            For a resonance without damping among others.
+            If the machine is impossible, for example at resonance without damping.
         """
         E = self.base_amplitude if base_amplitude is None else base_amplitude
         machine = Coupled(
@@ -164,23 +164,23 @@ class Scales:
 
     # ------------------------------------------------------------------ dimensionless -> SI
     def hertz(self, frequency: float) -> float:
-        """Frequency in Hz of Omega."""
+        """Return the frequency in Hz for Omega."""
         return frequency * self.omega_0 / (2.0 * math.pi)
 
     def metres(self, length: float) -> float:
-        """A dimensionless length in m."""
+        """Convert a dimensionless length to m."""
         return length * self.half_width
 
     def metres_per_second(self, velocity: float) -> float:
-        """A dimensionless velocity in m/s."""
+        """Convert a dimensionless velocity to m/s."""
         return velocity * self.half_width * self.omega_0
 
     def seconds(self, tau: float) -> float:
-        """A dimensionless time in s."""
+        """Convert a dimensionless time to s."""
         return tau / self.omega_0
 
     def joules(self, energy: float) -> float:
-        """An energy in units of m b^2 omega_0^2 (the unit of the measures) in J."""
+        """Convert an energy in units of m b^2 omega_0^2 (the unit of the measures) to J."""
         return energy * self.absorber_mass * (self.half_width * self.omega_0) ** 2
 
     @classmethod
@@ -193,15 +193,25 @@ class Scales:
         natural_frequency: float | None = None,
         gravity: float = STANDARD_GRAVITY,
     ) -> Self:
-        """SI data of a dimensionless machine.
+        """Return SI data of a dimensionless machine.
 
-        The machine's g~ = g/(b omega_0^2) ties half-width, natural frequency and gravity: of the first two one is enough, and
-        both must agree with it.
+        The machine's g~ = g/(b omega_0^2) relates half-width, natural frequency and gravity: one of the first two is enough; two
+        must agree with g~.
+
+        Parameters
+        ----------
+        machine : Coupled
+        oscillator_mass : float
+            M in kg.
+        half_width, natural_frequency : float, optional
+            In m and Hz.
+        gravity : float
+            g in m/s^2.
 
         Raises
         ------
         ParameterError
-            If too little is given, or too much that contradicts.
+            If the data do not determine the scales, or contradict each other.
         """
         _checked("oscillator_mass", oscillator_mass, "kg")
         for name, value, unit in (

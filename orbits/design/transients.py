@@ -1,6 +1,6 @@
-"""Transients of built-in machines: the free decay, and the start from rest, with the bare oscillator beside both.
+"""Transients of built-in machines: free decay and start from rest, each compared with the bare oscillator.
 
-They are simulated event by event (`orbits.simulation`); a recorded motion of the base is in `orbits.design.record`.
+They are simulated event by event (`orbits.simulation`). For a recorded motion of the base see `orbits.design.record`.
 """
 
 from __future__ import annotations
@@ -23,28 +23,28 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
-NINE_TENTHS = 0.9
-LONGEST = 4000.0  # forcing periods of a free decay
-FEWEST, MOST = 60, 2000  # forcing periods
-CONSTANTS = 6.0  # time constants of the bare oscillator that are followed
-PER_PERIOD = 80  # samples
+NINE_TENTHS = 0.9  # share of the initial energy whose loss defines the pumping time
+LONGEST = 4000.0  # longest free decay, in natural periods
+FEWEST, MOST = 60, 2000  # shortest and longest start from rest, in forcing periods
+CONSTANTS = 6.0  # default duration of a start from rest, in time constants of the bare oscillator
+PER_PERIOD = 80  # samples per forcing period
 
 
 @dataclass(frozen=True, eq=False)
 class Decay(Dissipation):
-    """A free decay; energies are those of vibration (kinetic, and of the spring) over the first one, times in 1/omega_0.
+    """A free decay; energies of vibration (kinetic energy and that of the spring) are relative to the initial one, times are in 1/omega_0.
 
     Attributes
     ----------
     times, energy : float array
-        Of oscillator and absorber together. On a slope it ends at zero, too: displacements count from where both rest. What gravity has
-        done on the way down is in `impacts` and `friction`.
+        Energy of oscillator and absorber together. With an inclined cavity it ends at zero, too, because displacements are measured from
+        the position of rest; the work of gravity is contained in `impacts` and `friction`.
     bare : float array
-        Of the oscillator without absorber, at the same times.
+        Energy of the oscillator without absorber, at the same times.
     impacts, friction, damping : float
-        Dissipated until the end.
+        Energies dissipated until the end.
     pumping_time, bare_time : float
-        When nine tenths of the energy are gone, with the absorber and without; nan where the run ends first.
+        Times at which nine tenths of the energy are lost, with and without the absorber; nan if the simulation ends before.
     """
 
     times: np.ndarray
@@ -58,7 +58,7 @@ class Decay(Dissipation):
 
 
 def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
-    """The decay of the machine after the oscillator is let go, the absorber at rest in the middle of the cavity.
+    """Simulate the decay after the oscillator is released from a displacement, with the absorber at rest in the middle of the cavity.
 
     Parameters
     ----------
@@ -66,12 +66,16 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
         A machine with an oscillator.
     params : float array (P,)
     displacement : float
-        Of oscillator and absorber, in half-widths.
+        Initial displacement of oscillator and absorber, in half-widths; not 0.
+
+    Returns
+    -------
+    Decay
 
     Raises
     ------
     ParameterError
-        If the machine has no oscillator, or nothing moves.
+        If the machine has no oscillator, or the displacement is 0 or not finite.
     """
     numbers = oscillator_numbers(model, params)
     if not (math.isfinite(displacement) and displacement != 0.0):
@@ -79,7 +83,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
     numbers |= {"forcing": 0.0, "frequency": 1.0}
     eps, damping = numbers["mass_ratio"], numbers["damping"]
     state = {"q1": displacement, "q2": displacement}
-    first = 0.5 * displacement**2  # of the spring; the energies below are in the same unit
+    first = 0.5 * displacement**2  # initial energy of the spring; the energies below are in the same unit
     times, energy, parts = [0.0], [1.0], np.zeros(3)
     while energy[-1] > 1.0 - NINE_TENTHS and len(times) <= LONGEST:
         run = simulate(model, state, periods=1.0, events=None, **numbers)
@@ -104,12 +108,19 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
 
 
 def taken_share(model: Model, params: np.ndarray, displacement: float, time: float) -> float:
-    """Share of the initial energy that impacts and friction have taken in so much time [1/omega_0] of the free decay, beside what gravity gave.
+    """Share of the initial energy that impacts and friction have dissipated after a time of the free decay; the work of gravity is not counted.
+
+    Parameters
+    ----------
+    model, params, displacement
+        As for `free_decay`.
+    time : float
+        In 1/omega_0.
 
     Raises
     ------
     ParameterError
-        As `free_decay` does, and for a time that is not above 0.
+        If the time is not above 0, or too long.
     """
     if not (0.0 < time <= 2.0 * math.pi * LONGEST):
         raise ParameterError(
@@ -135,7 +146,7 @@ def _energy(state: np.ndarray, eps: float) -> float:
 
 
 def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
-    """When the energy first falls to `level`, between two samples geometrically."""
+    """Return the time at which the energy first falls to `level`, with geometric interpolation between samples; nan if it does not."""
     below = np.flatnonzero(energy <= level)
     if not below.size:
         return math.nan
@@ -148,17 +159,17 @@ def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class StartUp(Dissipation):
-    """The first periods of a machine; lengths in half-widths, times in 1/omega_0, energies in the machine's own unit.
+    """Start of a machine from rest; lengths in half-widths, times in 1/omega_0, energies in the machine's own unit.
 
     Attributes
     ----------
     times, oscillator, relative, bare : float array
-        Displacement of the oscillator, of it against the absorber, and of the bare oscillator.
+        Times, and displacements of the oscillator, of the oscillator relative to the absorber, and of the bare oscillator.
     impact_times, impact_speeds : float array
     impacts, friction, damping : float
-        Energy taken until the end.
+        Energies dissipated until the end.
     settled, bare_settled : float
-        From when on the largest displacement of every forcing period stays within 5 % of the last ones; nan where it does not settle.
+        Time from which on the largest displacement of every forcing period stays within 5 % of that of the last periods, with and without the absorber; nan if it does not settle.
     """
 
     times: np.ndarray
@@ -177,7 +188,7 @@ class StartUp(Dissipation):
 def start_up(
     model: Varying, params: np.ndarray, periods: int | None = None, run_up: tuple[float, float] | None = None
 ) -> StartUp:
-    """Simulate the machine from rest, the absorber in the middle, from the moment at which the excitation begins at its phase 0.
+    """Simulate the machine from rest, with the absorber in the middle; the excitation begins at time 0 with phase 0.
 
     Parameters
     ----------
@@ -185,14 +196,18 @@ def start_up(
         A machine with an oscillator.
     params : float array (P,)
     periods : int, optional
-        Forcing periods, after a run-up; by default six time constants of the bare oscillator, 60 to 2000 periods.
+        Forcing periods (after the run-up, if there is one); default: six time constants of the bare oscillator, 60 to 2000 periods.
     run_up : (float, float), optional
-        Frequency at the start and time of a run-up, in omega_0 and 1/omega_0: the frequency rises linearly to the machine's own.
+        Initial frequency (in omega_0) and duration (in 1/omega_0) of a run-up, in which the frequency rises linearly to that of the machine.
+
+    Returns
+    -------
+    StartUp
 
     Raises
     ------
     ParameterError
-        If the machine has no oscillator, or the number of periods will not do.
+        If the machine has no oscillator, or the number of periods is out of range.
     """
     numbers = oscillator_numbers(model, params)
     omega = float(model.phase_speed(params))
@@ -220,7 +235,7 @@ def start_up(
 
 
 def _running_up(params: np.ndarray, time: float, run_up: tuple[float, float]) -> StartUp:
-    """The same in a machine file, where the phase may be any function of time."""
+    """Simulate the start with a run-up, using the declared machine `coupled_page`, whose phase may be any function of time."""
     from orbits.design.page_transients import coupled_page, page_transient
 
     found = page_transient(coupled_page(), params, run_up_from=run_up[0], run_up_time=run_up[1], time=time)
@@ -232,7 +247,7 @@ def _running_up(params: np.ndarray, time: float, run_up: tuple[float, float]) ->
 
 
 def _bare(times: np.ndarray, numbers: dict[str, float], omega: float) -> np.ndarray:
-    """q'' + eps lambda q' + q = e + share eps lambda e', e = eps G sin(Omega tau), from rest; exact."""
+    """Exact displacement of the bare oscillator from rest: q'' + eps lambda q' + q = e + share eps lambda e', e = eps G sin(Omega tau)."""
     eps = numbers["mass_ratio"]
     damping, share = eps * numbers["damping"], numbers.get("excitation", 1.0)
     size = eps * numbers["forcing"] * (1.0 + 1j * share * damping * omega)
@@ -242,7 +257,7 @@ def _bare(times: np.ndarray, numbers: dict[str, float], omega: float) -> np.ndar
     answer = size / below
     steady = np.imag(answer * np.exp(1j * omega * times))
     own = complex(-0.5 * damping, math.sqrt(1.0 - 0.25 * damping * damping))
-    # the free motion Re(a exp(own t)) that takes away the steady one's displacement and speed at the start
+    # the free motion Re(a exp(own t)) cancels displacement and speed of the steady motion at time 0
     place, speed = float(np.imag(answer)), float(np.imag(1j * omega * answer))
     a = complex(-place, (speed - own.real * place) / own.imag)
     return steady + np.real(a * np.exp(own * times))

@@ -1,1 +1,1 @@
-"""Theory beside the exact motions."""
+"""Approximate theory of the absorber: slow manifolds and multiple scales."""

@@ -1,7 +1,7 @@
-"""The slow manifolds: where the fast motion of the absorber settles while the amplitude drifts.
+"""Slow manifolds: motions on which the absorber settles fast while the amplitude of the oscillator varies slowly.
 
-Two of them meet the oscillator's slow plane: the *impacting* one, two symmetric impacts per period with mean
-absolute velocity ``B``, and the *sliding* one, ``B = 0``, where the absorber turns before it meets a wall.
+There are two: on the *impacting* manifold the absorber has two symmetric impacts per period with mean
+absolute velocity ``B``; on the *sliding* one (``B = 0``) it turns before it reaches a wall.
 All functions broadcast over numpy arrays. ``R = (1 - r)/(1 + r)`` is the impact loss and ``h = (pi/2) mu g``
 the friction, both dimensionless (lengths in half-widths of the cavity, time in 1/omega_0).
 
@@ -19,14 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class ManifoldPoint(NamedTuple):
-    """A point of a slow manifold: `velocity` is ``B``, `amplitude` is ``C`` (not its square)."""
+    """A point of a slow manifold: velocity ``B`` and amplitude ``C`` (not its square)."""
 
     velocity: NDArray | float
     amplitude: NDArray | float
 
 
 def impact_loss(restitution: ArrayLike) -> NDArray | float:
-    """``R = (1 - r)/(1 + r)``: 0 for elastic walls, 1 for walls that absorb everything."""
+    """``R = (1 - r)/(1 + r)``: 0 for elastic walls, 1 for perfectly inelastic ones."""
     r = np.asarray(restitution, dtype=float)
     return (1.0 - r) / (1.0 + r)
 
@@ -55,10 +55,10 @@ def slope(velocity: ArrayLike, loss: ArrayLike, level: ArrayLike) -> NDArray | f
 
 
 def activation(loss: ArrayLike, level: ArrayLike) -> ManifoldPoint:
-    """Lowest point of the impacting manifold, where the absorber engages (and lets go).
+    """Lowest point of the impacting manifold; below its amplitude the absorber has no impacting motion.
 
-    ``B_min = (2 pi - 4 R h)/(pi^2 + 4 R^2)``, ``C_min = (pi h + 2 R)/sqrt(pi^2 + 4 R^2)``. There a multiplier
-    of the symmetric orbit is +1 (fold).
+    ``B_min = (2 pi - 4 R h)/(pi^2 + 4 R^2)``, ``C_min = (pi h + 2 R)/sqrt(pi^2 + 4 R^2)``. There the symmetric
+    orbit has a fold (multiplier +1).
     """
     R, h = np.asarray(loss, float), np.asarray(level, float)
     size = np.pi**2 + 4.0 * R**2
@@ -66,10 +66,10 @@ def activation(loss: ArrayLike, level: ArrayLike) -> ManifoldPoint:
 
 
 def symmetry_limit(loss: ArrayLike, level: ArrayLike) -> ManifoldPoint:
-    """Upper end of the attracting part, where the symmetric orbit gives way to an asymmetric pair.
+    """Upper end of the attracting part of the impacting manifold: symmetry breaking into an asymmetric pair.
 
-    ``B_max = (2 pi - 4 R h)/(pi^2 - 4)`` and ``C_max`` from the manifold. With ``h~ = (1 + eps) h`` the
-    value is exact for the reduced model at ``Omega = 1``.
+    ``B_max = (2 pi - 4 R h)/(pi^2 - 4)``, and ``C_max`` is the amplitude of the manifold there. With
+    ``h~ = (1 + eps) h`` the value is exact for the reduced model at ``Omega = 1``.
     """
     R, h = np.asarray(loss, float), np.asarray(level, float)
     velocity = (2.0 * np.pi - 4.0 * R * h) / (np.pi**2 - 4.0)
@@ -77,9 +77,9 @@ def symmetry_limit(loss: ArrayLike, level: ArrayLike) -> ManifoldPoint:
 
 
 def velocity_at(amplitude: ArrayLike, loss: ArrayLike, level: ArrayLike, branch: int = 1) -> NDArray | float:
-    """Mean velocity ``B`` at an amplitude ``C``: `branch` +1 is the right (attracting) part, -1 the left.
+    """Mean velocity ``B`` of the impacting manifold at an amplitude ``C``: `branch` +1 is the right (attracting) part, -1 the left.
 
-    NaN below the activation threshold, where the manifold has no point.
+    nan below the activation threshold, where the manifold has no point.
     """
     R = np.asarray(loss, dtype=float)
     low = activation(R, level)
@@ -89,10 +89,10 @@ def velocity_at(amplitude: ArrayLike, loss: ArrayLike, level: ArrayLike, branch:
 
 
 def reversal_bound(amplitude: ArrayLike, velocity: ArrayLike, level: ArrayLike) -> NDArray | float:
-    """Distance ``B - h - C`` to the end of validity of the impacting ansatz; valid where positive.
+    """Margin ``B - h - C`` of the impacting ansatz, which is valid where it is positive.
 
-    A sufficient condition: while it holds the relative velocity ``C cos + B - h(...)`` cannot change sign in
-    flight, so friction keeps the direction the ansatz gives it.
+    A sufficient condition: the relative velocity ``C cos + B - h(...)`` then cannot change sign during a
+    flight, so the friction force has the direction that the ansatz assumes.
     """
     return np.asarray(velocity, float) - np.asarray(level, float) - np.asarray(amplitude, float)
 
@@ -100,15 +100,15 @@ def reversal_bound(amplitude: ArrayLike, velocity: ArrayLike, level: ArrayLike) 
 def sliding_bounds(level: ArrayLike) -> tuple[NDArray | float, NDArray | float]:
     """Amplitudes ``C`` between which the absorber slides without sticking and without impacts.
 
-    ``C^2`` from ``h^2 (1 + 4/pi^2)`` (below, the absorber sticks at each turn) to ``1 + h^2`` (it grazes the
-    walls). At a turn the frame's acceleration is the turning point ``delta = sqrt(C^2 - h^2)`` itself,
-    and it beats friction while ``delta > (2/pi) h``.
+    ``C^2`` lies between ``h^2 (1 + 4/pi^2)`` (below, the absorber sticks at each turn) and ``1 + h^2`` (it
+    grazes the walls). At a turn the acceleration of the cavity equals the turning point
+    ``delta = sqrt(C^2 - h^2)``; it exceeds friction while ``delta > (2/pi) h``.
     """
     h = np.asarray(level, dtype=float)
     return h * np.sqrt(1.0 + 4.0 / np.pi**2), np.sqrt(1.0 + h**2)
 
 
 def turning_point(amplitude: ArrayLike, level: ArrayLike) -> NDArray | float:
-    """Where the purely sliding absorber turns, ``delta = sqrt(C^2 - h^2)`` (half-widths of the cavity)."""
+    """Position at which the purely sliding absorber turns, ``delta = sqrt(C^2 - h^2)`` (half-widths of the cavity)."""
     with np.errstate(invalid="ignore"):
         return np.sqrt(np.asarray(amplitude, float) ** 2 - np.asarray(level, float) ** 2)
