@@ -1,4 +1,4 @@
-"""A built-in machine's motion on its way: the simulator (`orbits.flows.protocol`) round the native core's stepper or its reference."""
+"""Simulator of the built-in machines (`orbits.flows.protocol.Simulator`), which uses the native core's stepper or its reference."""
 
 from __future__ import annotations
 
@@ -32,30 +32,32 @@ from orbits.machines.stepping import (
 from orbits.settings import EVENTS, REPLAYING, SIMULATING
 from orbits.words import Word
 
-FIRST, CHUNK = 256, 16384  # events that are kept at once
-ROOM = 1024  # events that are made at once where none is kept
+FIRST, CHUNK = 256, 16384  # events in the first and in every further buffer of a run
+ROOM = 1024  # events in the buffer of a run that keeps none
 MOST_EVENTS = 1_000_000
 _KEYS = {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}
 _BODIES = ("q1", "q2", "q1_rate", "q2_rate")
-PER_PERIOD = 400  # events
-SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
+PER_PERIOD = 400  # largest number of events per forcing period
+SPEEDS = (
+    2.5  # box of starts: largest relative velocity over the cavity's largest velocity (or over 1, if larger)
+)
 TRANSIENTS = (
     40.0,
     160.0,
     640.0,
     2560.0,
-)  # forcing periods of many starts, each for those that do not recur before
-LOOKS = 40  # at motions that are followed longer: where one has ended it is followed no further
-FOREVER = 1_000_000.0  # periods: only a motion that keeps off the walls lasts so long without events
+)  # forcing periods left out for many starts, one after another for the motions that have not recurred
+LOOKS = 40  # searches for a recurrence in a prolonged run; motions that have recurred are followed no further
+FOREVER = 1_000_000.0  # longest run, in forcing periods; only a motion away from the walls lasts so long without events
 
 
 class NativeSimulator(Simulator[Model, NativeTrajectory]):
-    """See the contract at the top of `orbits.flows.protocol`.
+    """Moves one motion of a built-in machine on; see `orbits.flows.protocol.Simulator`.
 
     Attributes
     ----------
     state : float array (S,)
-        As `orbits.machines.stepping` has it.
+        State of the stepper; layout in `orbits.machines.stepping`.
     """
 
     forced = True
@@ -78,21 +80,21 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
 
     @property
     def modes(self) -> int:
-        """What the friction does."""
+        """Mode of the friction."""
         return int(self.state[MODE])
 
     @property
     def time(self) -> float:
-        """Forcing periods."""
+        """Time in forcing periods."""
         return float(self.state[TURNS]) + float(self.state[PSI]) / (2.0 * np.pi)
 
     @property
     def point(self) -> np.ndarray:
-        """The coordinates."""
+        """Present coordinates."""
         return self.state[self._places]
 
     def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None:
-        """Begin at a point; the mode follows from it."""
+        """Begin at a point; the mode of the friction follows from it."""
         self.state = np.zeros(self.engine.state)
         self.state[PSI] = 2.0 * np.pi * time
         self.state[self._places] = point
@@ -104,26 +106,32 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         self.state = self.state_of(start)
 
     def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray:
-        """The state of a start."""
+        """Return the state of a start."""
         return first_state(self.model, self.engine, self.params, start)
 
     def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
-        """Begin where another simulation has ended, its velocity changed a little."""
+        """Begin at the final state of another simulation; `nudge` is added to the speed."""
         self.state = state.copy()
         if nudge and self.state[MODE] != 0.0:
             self.state[RATE] += nudge * np.sign(self.state[MODE])
         self.engine.launch(self.state, self.params)
 
     def begin(self, word: Word, node: np.ndarray) -> None:
-        """Just after the first event of a cycle."""
+        """Begin just after the first event of a cycle with this word, at the unknowns `node`."""
         self.state = self.engine.state_of(self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
         left, right = self.engine.walls(self.params)
         self.state[W] = min(
             max(self.state[W], right), left
-        )  # of a cycle of other parameters it may lie within a wall
+        )  # a cycle at other parameters may lie inside a wall
 
     def follow(self, until: float) -> None:
-        """Move on; `SimulationError` if the motion is not finite or comes to rest for ever."""
+        """Move on to the time `until`.
+
+        Raises
+        ------
+        SimulationError
+            If the motion is not finite, or comes to rest for ever.
+        """
         most = int(PER_PERIOD * max(until - self.time + 1.0, 1.0))
         status = skip(self.engine, self.state, self.params, until, most)
         if status == FAILED or not abs(self.time - until) < SIMULATING.whole:
@@ -132,7 +140,13 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
             )
 
     def run(self, periods: float, most: int = MOST_EVENTS) -> NativeTrajectory:
-        """Move on and keep the motion; `SimulationError` if it leaves the range of numbers."""
+        """Move on by `periods` or at most `most` events, and return the motion.
+
+        Raises
+        ------
+        SimulationError
+            If the motion leaves the range of numbers.
+        """
         begin, state = self.state.copy(), self.state
         until = self.time + min(periods, FOREVER)
         codes, modes, rows, status = collect(self.engine, state, self.params, until, most)
@@ -142,14 +156,14 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
             )
         walls = self.engine.walls(self.params)
         if begin[MODE] == 0.0 and begin[W] not in walls and self.model.frictionless(self.params):
-            # off the walls nothing rests without friction, not even at the instant at which nothing pushes
+            # without friction nothing rests away from the walls, not even at an instant without force
             begin[MODE] = 1.0
         clocks = np.append(_clock(begin), rows[:, 0] + TWO_PI * rows[:, 1])
         ends = float(_clock(state)), KINDS[codes], status, self.engine, begin, state.copy()
         return NativeTrajectory(self.model, self.params, clocks, *ends, codes, modes, rows)
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Of a point at a wall the other one there and the direction away from the wall; None elsewhere."""
+        """Return the counterpart, across the impact, of a point at a wall, and the direction away from the wall; None elsewhere."""
         walls, restitutions = self.engine.walls(self.params), self.model.restitutions(self.params)
         for wall, side, r in zip(walls, (1.0, -1.0), map(float, restitutions)):
             if abs(point[0] - wall) < near and point[1] != 0.0:
@@ -161,7 +175,7 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
 
     # ------------------------------------------------------------------ settling
     def skip(self, count: float) -> bool:
-        """Move on by so many forcing periods."""
+        """Move on by `count` forcing periods without keeping events."""
         until = self.state[TURNS] + count
         status = skip(self.engine, self.state, self.params, until, int(PER_PERIOD * (count + 1.0)))
         if status == FAILED:
@@ -171,12 +185,12 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         return True
 
     def look(self, longest: int) -> NativeTrajectory:
-        """Run on for two of the longest recurrences."""
+        """Run for a little more than two of the longest recurrences."""
         length = 2.0 * longest + 1.0
         return self.run(length, int(PER_PERIOD * length))
 
     def rests(self, run: NativeTrajectory, last: bool) -> bool | None:
-        """Whether the absorber sticks for good; an oscillator may still be growing, or between two beats."""
+        """Return whether the absorber sticks for good; None while an oscillator may still grow, or is between two beats."""
         begin = run.start
         if run.status != REST and (len(run) or begin[RATE] != 0.0 or begin[MODE] != 0.0):
             return False
@@ -188,9 +202,9 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         return None if slips or not self._oscillator_settles() else True
 
     def _oscillator_settles(self) -> bool:
-        """Wait, with the absorber stuck, until its oscillator has settled; False if it slips meanwhile."""
+        """Follow the stuck absorber until its oscillator has settled; return False if it slips before."""
         if not self.engine.moving_cavity:
-            return True  # its cavity moves as prescribed
+            return True  # the motion of the cavity is prescribed
         state, length = self.state, 64.0
         while state[TURNS] < self.waiting.slow:
             before = state.copy()
@@ -203,14 +217,17 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         return True
 
     def move_on(self, run: NativeTrajectory, longest: int) -> bool:
-        """Move a motion that creeps along the cavity to a wall."""
+        """Move a motion that creeps along the cavity close to a wall; return whether it was moved."""
         if self.engine.moving_cavity or not len(run):
             return False
         ways = creep(run.nodes, run.codes, run.modes, longest)
         if ways is None:
             return False
         left, right = self.engine.walls(self.params)
-        places, way = run.nodes[-len(ways) :, 1], float(ways[-1])  # the turns and sticks are the furthest
+        places, way = (
+            run.nodes[-len(ways) :, 1],
+            float(ways[-1]),
+        )  # the extreme positions are turns and sticks
         room = left - places.max() if way > 0.0 else right - places.min()
         times = math.floor(room / way) - 1
         if times < 1:
@@ -219,18 +236,18 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         return True
 
     def push(self) -> None:
-        """Change its velocity a little."""
+        """Change the velocity a little."""
         self.state[RATE] *= 1.0 + REPLAYING.displaced
 
     def growth(self) -> tuple[float, float]:
-        """See `orbits.flows.native.batches.lyapunov`."""
+        """Return the largest Lyapunov exponent and its error; see `orbits.flows.native.batches.lyapunov`."""
         return lyapunov(self.model.name, self.state, self.params)
 
     # ------------------------------------------------------------------ many starts
     def box(self) -> np.ndarray:
-        """The cavity, and the velocities its walls can give."""
+        """Return the box of starts: positions in the cavity, and velocities in proportion to those of the walls."""
         model, names = self.model, self.model.parameter_names
-        shaking = 1.0  # largest velocity of the cavity's centre that the excitation gives, as far as it is known beforehand
+        shaking = 1.0  # largest velocity of the cavity's centre under the excitation; 1 if it cannot be computed in advance
         if "amplitude" in names:
             shaking = float(self.params[names.index("amplitude")] * model.phase_speed(self.params))
         left, right = (float(wall) for wall in self.engine.walls(self.params))
@@ -239,7 +256,7 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         return np.array(rows[: 1 + len(self._places)])
 
     def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch:
-        """See `orbits.flows.native.batches.settle_all`."""
+        """Run all starts until they recur; see `orbits.flows.native.batches.settle_all`."""
         states = np.zeros((len(points), self.engine.state))
         states[:, [PSI, *self._places]] = points
         return self._settled(states, TRANSIENTS, longest, workers)
@@ -247,7 +264,7 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
     def settle_longer(
         self, batch: Batch, here: np.ndarray, longest: int, periods: float, workers: int | None
     ) -> None:
-        """The same for those of a batch that have not recurred."""
+        """Run the motions `here` of a batch, which have not recurred, for up to `periods` more."""
         more = self._settled(batch.states[here], [periods / LOOKS] * LOOKS, longest, workers)
         for known, new in zip(batch[:6], more[:6]):
             known[here] = new
@@ -269,7 +286,7 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
 
 
 def cores() -> int:
-    """Processors that this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -280,7 +297,13 @@ def _clock(state: np.ndarray) -> float:
 def first_state(
     model: Model, engine: Stepper, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
 ) -> np.ndarray:
-    """The state, shape (S,), that a start describes; `SimulationError` if it cannot be one."""
+    """Return the state, shape (S,), of a start given by names or as a state.
+
+    Raises
+    ------
+    SimulationError
+        If the start is impossible.
+    """
     state = np.zeros(engine.state)
     if isinstance(start, np.ndarray):
         if start.shape != state.shape:
@@ -310,7 +333,7 @@ def _check(state: np.ndarray, walls: tuple[float, float]) -> None:
     if not np.all(np.isfinite(state)):
         raise SimulationError("the start is not finite: give numbers for phase, w and w_rate")
     left, right = walls
-    rounding = 16.0 * np.finfo(float).eps * (left - right)  # of a motion that begins at a wall
+    rounding = 16.0 * np.finfo(float).eps * (left - right)  # for a motion that begins at a wall
     if not right - rounding <= state[W] <= left + rounding:
         raise SimulationError(f"w = {state[W]:g} lies outside the cavity: give {right:g} <= w <= {left:g}")
     state[W] = min(max(state[W], right), left)
@@ -319,7 +342,7 @@ def _check(state: np.ndarray, walls: tuple[float, float]) -> None:
 def collect(
     engine: Stepper, state: np.ndarray, params: np.ndarray, until: float, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Run on from `state` (changed in place) for at most `most` events; returns codes, modes, rows and the status."""
+    """Run on from `state` (changed in place) for at most `most` events; return codes, modes, rows and the status."""
     parts = []
     status = EVENTS_FULL
     left = most
@@ -336,7 +359,7 @@ def collect(
 
 
 def skip(engine: Stepper, state: np.ndarray, params: np.ndarray, until: float, most: int) -> int:
-    """Run on from `state` (changed in place) without keeping events; returns the status."""
+    """Run on from `state` (changed in place) without keeping events; return the status."""
     room, status = buffers(engine, ROOM), EVENTS_FULL
     while most > 0 and status == EVENTS_FULL:
         count, status = engine.advance(state, params, until, *room)
@@ -345,17 +368,17 @@ def skip(engine: Stepper, state: np.ndarray, params: np.ndarray, until: float, m
 
 
 def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: int) -> np.ndarray | None:
-    """The ways from the last events' places to those before them, shape (events of a recurrence,); None where the motion does not creep.
+    """Return the displacements of the last recurrence's events since the one before, shape (events of a recurrence,); None without creep.
 
-    Creep is a motion without impacts that comes back after some periods but for a little way along the cavity: where friction holds less one way
-    than the other (a slope, unlike walls' frictions) the absorber slips a little further in every period. Between the walls all places are
-    alike as long as the cavity moves as prescribed, so each time the way is the same, and the motion may be moved on by as many of these
-    ways as there is room for: what it settles on is decided at the wall.
+    A motion without impacts creeps if it recurs after some periods except for a small displacement along the cavity. This happens if
+    friction holds less in one direction than in the other (on a slope, for example): the absorber slips a little further in every period.
+    As long as the cavity moves as prescribed, all places between the walls are equivalent and each displacement is the same. So the motion may
+    be moved on by as many displacements as there is space for: only at the wall is decided on what it settles.
 
     Parameters
     ----------
     nodes : ndarray, shape (n, NODE)
-        Of a motion, phases counted through.
+        Nodes of a motion, phases counted through.
     codes, modes : ndarray of int, shape (n,)
     max_period : int
         Longest recurrence, in forcing periods.

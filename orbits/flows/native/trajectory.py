@@ -1,4 +1,4 @@
-"""A simulated motion of a built-in machine: the exact list of events, and the motion between them in closed form."""
+"""A simulated motion of a built-in machine: exact events, and closed forms between them."""
 
 from __future__ import annotations
 
@@ -21,9 +21,11 @@ if TYPE_CHECKING:
 
 LETTERS = "LRtsuH"
 KINDS = np.array([kinds.HIT, kinds.HIT, kinds.TURN, kinds.STICK, kinds.SLIP, kinds.HOLD])
-MOST_STEPS = 60  # towards a peak
-PER_PERIOD = 200  # instants
-PER_OSCILLATION = 12  # instants between which an extremum of q1 is looked for; events come on top
+MOST_STEPS = 60  # largest number of steps of the root search for a peak
+PER_PERIOD = 200  # samples per forcing period
+PER_OSCILLATION = (
+    12  # samples per natural oscillation, between which extrema of q1 are searched; events are added
+)
 
 
 class Samples(NamedTuple):
@@ -39,9 +41,9 @@ class Samples(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """Where the energy went: change = excitation - damping - friction - impacts, up to `error`.
+    """Energy balance: change = excitation - damping - friction - impacts, up to `error`.
 
-    `error` is relative to all work done, up or down, plus the kinetic energy that the cavity's speed stands for.
+    `error` is relative to the sum of all works in absolute value plus energies: those at the ends, and the kinetic energy at the cavity's speed.
     """
 
     change: float
@@ -59,7 +61,7 @@ class NativeTrajectory(Trajectory):
     Attributes
     ----------
     machine : Stepper
-        Its stepper.
+        The machine's stepper.
     start, end : ndarray, shape (S,)
         First and last state; see :mod:`orbits.machines.stepping`.
     codes, modes : ndarray of int8, shape (n,)
@@ -77,27 +79,27 @@ class NativeTrajectory(Trajectory):
 
     @property
     def points(self) -> np.ndarray:
-        """Positions and velocities just after the events."""
+        """Positions and velocities just after the events, shape (n, d)."""
         return self.states[1:, list(self.machine.places)]
 
     @cached_property
     def letters(self) -> str:
-        """The events as one string."""
+        """The letters of the events as one string."""
         return "".join(LETTERS[code] for code in self.codes)
 
     @property
     def occurrences(self) -> list[tuple[str, int]]:
-        """Letters and modes."""
+        """Letter and mode of each event."""
         return [*zip(map(LETTERS.__getitem__, self.codes.tolist()), self.modes.tolist())]
 
     @cached_property
     def labels(self) -> np.ndarray:
-        """A number for each event."""
+        """One number for each event, the same for equal events, int array (n,)."""
         return 3 * self.codes.astype(int) + self.modes
 
     @property
     def held(self) -> bool:
-        """Whether the absorber rests on a wall all the time."""
+        """Whether the absorber rests on a wall during the whole run."""
         return not len(self) and self.start[MODE] == 0.0 and self.start[W] in self.machine.walls(self.params)
 
     @property
@@ -107,11 +109,14 @@ class NativeTrajectory(Trajectory):
 
     @property
     def nodes(self) -> np.ndarray:
-        """What continuation solves for, at every event, shape (n, NODE)."""
+        """Unknowns of continuation at every event, shape (n, NODE)."""
         return self.machine.nodes_of(self.params, self.codes, self.modes, self.rows)
 
     def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
-        """Word and nodes of a cycle; touches of a wall are no impacts on it, and where no wall is hit it lies in the middle."""
+        """Return word and nodes of the cycle that consists of events `first` to `last` - 1.
+
+        Mere touches of a wall are left out, and a cycle without impacts is placed in the middle of the cavity.
+        """
         model, part = self.model, slice(first, last)
         codes, modes, rows = self.codes[part], self.modes[part], self.rows[part]
         nodes = self.machine.nodes_of(self.params, codes, modes, rows)
@@ -123,20 +128,20 @@ class NativeTrajectory(Trajectory):
         return word, model.at_home(codes, nodes[kept], self.params)
 
     def approaches(self, first: int = 0) -> np.ndarray:
-        """|w'| just before the impacts."""
+        """Return |w'| just before the impacts from event `first` on."""
         return np.abs(self.rows[first:, 3][self.hits[first:]])
 
     def shown(self, first: int) -> list[float]:
-        """B = (B+ - B-)/2, positive away from the wall, at the impacts: v' does not change there, so that it is half the jump of -w'."""
+        """Return B = (B+ - B-)/2 of the impacts, positive away from the wall: half the jump of -w', because v' does not jump."""
         part = self.rows[first:][self.hits[first:]]
         away = 1.0 - 2.0 * self.codes[first:][self.hits[first:]]  # L = 0, R = 1
         jumps = 0.5 * away * (part[:, 3] - part[:, 4])
         return (jumps * float(self.model.gauge("velocity", self.params))).tolist()
 
     def extremes(self, per_period: int = 0) -> dict[str, float]:
-        """Largest |w|, and of a machine with an oscillator its largest displacement."""
+        """Return the largest |w|, and the largest displacement of an oscillator (reduced model: C2)."""
         reach = np.append(self.states[:, W], self.end[W])
-        if self.model.frictionless(self.params):  # turns are no events there
+        if self.model.frictionless(self.params):  # without friction turns are no events
             reach = np.append(reach, self.sample().w)
         left, right = self.machine.walls(self.params)
         far = min(max(left, -right), float(np.abs(reach).max()))
@@ -148,18 +153,18 @@ class NativeTrajectory(Trajectory):
         return {"max_abs_q1": self.peak_cavity(often), "max_abs_w": far}
 
     def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
-        """|q1| over the phase."""
+        """Return phases, and |q1| at these phases."""
         seen = self.sample(per_period=per_period)
         return seen.phase, np.abs(seen.cavity)
 
     @cached_property
     def states(self) -> np.ndarray:
-        """State at the start and after every event, shape (n + 1, S)."""
+        """States at the start and after every event, shape (n + 1, S)."""
         return np.concatenate([self.start[None, :], self.machine.event_states(self.modes, self.rows)])
 
     @cached_property
     def lengths(self) -> np.ndarray:
-        """Phase that passes in each segment, shape (n + 1,); the last one ends with the run."""
+        """Length of each flight in phase, shape (n + 1,); the last one ends with the run."""
         psi = np.append(self.states[:, PSI], self.end[PSI])
         turns = np.append(self.states[:, TURNS], self.end[TURNS])
         return np.maximum(np.diff(psi) + TWO_PI * np.diff(turns), 0.0)
@@ -190,13 +195,13 @@ class NativeTrajectory(Trajectory):
         return Samples(phases, w, w_rate, v, v_rate, *self.model.bodies(w, v, self.params))
 
     def flown(self, places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-        """w, w', v, v', shape (m, 4)."""
+        """Return w, w', v, v' at clocks `ahead` after the start (place 0) or event `place`, shape (m, 4)."""
         out = np.empty((len(ahead), 4))
         self.machine.sample(self.states[places], self.params, ahead, out)
         return out
 
     def peak_cavity(self, per_period: int = PER_PERIOD) -> float:
-        """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
+        """Return the largest displacement |q1| of the cavity in the run: at events, ends, and zeros of q1' between samples."""
         grid = self._grid(per_period)
         marks = np.concatenate([grid, self.phases])
         marks = np.unique(marks[(marks >= grid[0]) & (marks <= grid[-1])])
@@ -206,11 +211,11 @@ class NativeTrajectory(Trajectory):
         high = np.abs(seen.cavity)
         peak = float(high.max())
         steep = np.maximum(np.abs(speed[turn]), np.abs(speed[turn + 1]))
-        rise = steep * (marks[turn + 1] - marks[turn])  # q1' changes its sign there: q1 can gain no more
+        rise = steep * (marks[turn + 1] - marks[turn])  # largest possible gain of q1 up to the zero of q1'
         turn = turn[np.maximum(high[turn], high[turn + 1]) + rise >= peak]
         lo, hi, below, above = marks[turn], marks[turn + 1], speed[turn], speed[turn + 1]
         before, place = np.zeros(turn.size, dtype=int), np.full(turn.size, np.inf)
-        for _ in range(MOST_STEPS if turn.size else 0):  # the Illinois rule, for all at once
+        for _ in range(MOST_STEPS if turn.size else 0):  # the Illinois rule, for all zeros together
             last, place = place, np.clip(lo + (hi - lo) * below / (below - above), lo, hi)
             here = self.sample(place)
             rate, _ = self.model.bodies(here.w_rate, here.v_rate, self.params)
@@ -218,7 +223,7 @@ class NativeTrajectory(Trajectory):
             if np.all((rate == 0.0) | (np.abs(place - last) < SIMULATING.peak)):
                 break
             side = np.where(rate * below > 0.0, 1, -1)
-            share = np.where(side == before, 0.5, 1.0)  # an end that stays twice counts half
+            share = np.where(side == before, 0.5, 1.0)  # an end kept twice gets half its weight
             lo, hi = np.where(side > 0, place, lo), np.where(side > 0, hi, place)
             below, above = (
                 np.where(side > 0, rate, share * below),
@@ -228,12 +233,12 @@ class NativeTrajectory(Trajectory):
         return peak
 
     def _grid(self, per_period: int) -> np.ndarray:
-        """Evenly spaced phases over the run."""
+        """Return equally spaced phases over the run."""
         first, last = float(self.clocks[0]), self.finish
         return np.linspace(first, last, max(2, int(np.ceil((last - first) / TWO_PI * per_period)) + 1))
 
     def balance(self) -> Balance:
-        """Energy balance over the run, in the energy that the model's kernels define."""
+        """Return the energy balance of the run, with the energy as the model's kernels define it."""
         works = np.empty((len(self) + 1, 3))
         self.machine.works(self.states, self.params, self.lengths, works)
         before = self.states[1:].copy()
@@ -258,10 +263,10 @@ class NativeTrajectory(Trajectory):
 
 
 def _touches(codes: np.ndarray, nodes: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    """Which events of a cycle without other impacts are touches of a wall, after which the absorber stays where it is.
+    """Return which events are mere touches of a wall that leave the absorber in place; only if the cycle has no other impacts.
 
-    Stick-slip near a wall is pushed away from it until it only just reaches it. What is left of the impacts then is rounding; the
-    motion is that without impacts, somewhere in the cavity.
+    A stick-slip motion that overlaps a wall is pushed away by impacts until it only just reaches the wall. The impacts that remain are
+    roundoff; the motion is a motion without impacts, somewhere in the cavity.
     """
     hits = codes < 2
     wait = (np.roll(nodes[:, 0], -1) - nodes[:, 0]) % TWO_PI

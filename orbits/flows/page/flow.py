@@ -1,4 +1,4 @@
-"""The flow of declared machines: integrated."""
+"""The flow of declared machines, with integrated flights."""
 
 from __future__ import annotations
 
@@ -20,11 +20,14 @@ from orbits.machines.page.si import OF_A_STATE
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word, place_of
 
-LARGE = 5  # states
+LARGE = 5  # number of states from which fewer starts are simulated
 
 
 class PageFlow(Flow[Machine]):
-    """See `orbits.flows.protocol`; a node is the phase, or the duration of the flight that follows, and the states after the event."""
+    """See `orbits.flows.protocol.Flow`.
+
+    A node is the clock (the phase; of a self-excited machine the duration of the flight that follows) and the states after the event.
+    """
 
     angles = ("phase",)
     seconds = "time"
@@ -34,20 +37,20 @@ class PageFlow(Flow[Machine]):
     resolution = SIMULATING.same
 
     def census(self, model: Machine) -> Census:
-        """Flights are integrated one by one; of a machine with many states words are long, and a start is followed for seconds."""
+        """Return a small census: flights are integrated one by one; with many states words are long and a start takes seconds."""
         few = 6 if model.size < LARGE else 2
         return Census(across=60, brief=(3, few), price=20.0, longest=16, embedded=4)
 
     def coordinates(self, model: Machine) -> tuple[str, ...]:
-        """The states."""
+        """Return the names of the states."""
         return model.states
 
     def position_entries(self, model: Machine) -> tuple[int, ...]:
-        """States that no wall pushes."""
+        """Return the entries of the states that no wall changes by an impulse."""
         return tuple(1 + j for j in unmoved(model))
 
     def points(self, motion: Motion[Machine]) -> np.ndarray:
-        """The states."""
+        """Return the states just after the events, shape (L, n)."""
         return motion.nodes[:, 1:]
 
     def equations(
@@ -60,26 +63,26 @@ class PageFlow(Flow[Machine]):
         symmetric: bool = False,
         units: tuple[float, float] | None = None,
     ) -> PageEquations:
-        """Flight by flight, in numpy; a page has no units of its own."""
+        """Return the equations of the cycles with this word, flight by flight; `units` is not used."""
         return PageEquations(model, word, periods, parameter, params, symmetric)
 
     def loose(self, model: Machine, word: Word) -> tuple[int, ...]:
-        """States that no rate and no event of the word knows."""
+        """Return the entries of the states on which no rate and no event of the word depends."""
         return tuple(1 + j for j in loose_states(model, word))
 
     def strobed(self, motion: Motion[Machine]) -> np.ndarray:
-        """The states."""
+        """Return the states of a motion without events, once per forcing period."""
         nodes = strobed(motion.model, motion.word, motion.periods, motion.nodes[0], motion.params)
         return nodes[:, 1:]
 
     def default_measure(self, model: Machine) -> str:
-        """What the page says, impact speeds, or how far the first state goes."""
+        """Return the machine file's response; otherwise the approach speed if there are walls, else the maximum of the first state."""
         if model.response is not None:
             return model.response
         return "approach_speed" if model.alphabet.walled else f"max_{model.states[0]}"
 
     def simulated_names(self, model: Machine) -> tuple[str, ...]:
-        """How far the first state goes, the fastest impact and how many there are; where it is forced a band, too."""
+        """Return the extremes of the first state, approach speed and impact rate; with forcing also the band of the response."""
         first = model.states[0]
         forced = (*BAND, SILENT) if model.forced else ()
         return (
@@ -90,17 +93,17 @@ class PageFlow(Flow[Machine]):
         )
 
     def swept(self, model: Machine) -> tuple[str, ...]:
-        """What the page says; else impact speeds, which belong to the impacts, or how far the first state goes."""
+        """Return the machine file's response; otherwise nothing if there are walls (impacts are plotted), else extremes of the first state."""
         if model.response not in (None, "approach_speed"):
             return (model.response,)
         return () if model.alphabet.walled else self.simulated_names(model)[:2]
 
     def in_units(self, model: Machine, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
-        """They are."""
+        """Return the values as they are: they have the machine's units."""
         return values
 
     def described(self, motion: Motion[Machine]) -> dict[str, Any]:
-        """Clock and states after the events."""
+        """Return clock and states after the events."""
         clock = "phase" if motion.model.forced else "duration"
         nodes = [
             {"event": event, clock: float(row[0]), **dict(zip(motion.model.states, map(float, row[1:])))}
@@ -109,7 +112,7 @@ class PageFlow(Flow[Machine]):
         return {"nodes": nodes, **({} if len(motion.word) else {"rest": "no events"})}
 
     def kind(self, motion: Motion[Machine]) -> str:
-        """A motion without events is one, too, unless no state changes."""
+        """Return "periodic"; "stuck" for a motion without events in which no state changes."""
         if len(motion.word):
             return "periodic"
         table = self.sample(motion, 50)
@@ -117,14 +120,14 @@ class PageFlow(Flow[Machine]):
         return "periodic" if moves else "stuck"
 
     def restitution(self, motion: Motion[Machine], place: int) -> float:
-        """Of the wall that is hit, as its formula has it there."""
+        """Return the restitution of the wall that is hit, evaluated at the impact."""
         model, node = motion.model, motion.nodes[place]
         numbers = model.compiled.numbers(motion.params, motion.word.entries(place))
         rebound = model.compiled.rebound(motion.word.letter(place).contact)
         return float(rebound.one(node[1:], float(node[0]) if model.forced else 0.0, numbers)[1])
 
     def without_events(self, motion: Motion[Machine]) -> np.ndarray:
-        """The nodes at phase zero; of a self-excited motion at the extreme of the first state that moves."""
+        """Return nodes at phase zero of each period; of a self-excited motion at the extreme of the first state that moves."""
         if not motion.model.forced:
             table = self.sample(motion, 4000)
             states = np.column_stack([table[name] for name in motion.model.states])
@@ -136,12 +139,12 @@ class PageFlow(Flow[Machine]):
 
     # ------------------------------------------------------------------ between the events, and at borders
     def flown(self, motion: Motion[Machine], places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-        """States."""
+        """Return the states at clocks `ahead` after the events `places`, shape (m, n)."""
         clocks, states = motion.nodes[:, 0], motion.nodes[:, 1:]
         return flown(motion.model, motion.params, motion.word.contact_modes, states, clocks, places, ahead)
 
     def vanishing(self, motion: Motion[Machine], index: int, unit: int) -> Vanishing:
-        """What vanishes with margin `index` of a border orbit, over its whole cycle."""
+        """Return the event that vanishes with margin `index` of a border orbit, over its whole cycle."""
         place, watched = place_of(motion.word, index)
         spans = motion.durations
         site = Site(motion.word, place, spans, unit)
@@ -153,13 +156,22 @@ class PageFlow(Flow[Machine]):
         return Vanishing(site, watched, (ahead, state))
 
     def _end(self, motion: Motion[Machine], place: int, share: float) -> int:
-        """The event at that end of a flight at which a guard vanishes; -1 inside it."""
+        """Return the event at the end of the flight at which a guard vanishes; -1 if it vanishes inside."""
         if not len(motion.word) or EVENTS.at_end <= share <= 1.0 - EVENTS.at_end:
             return -1
         return (place if share < EVENTS.at_end else place + 1) % len(motion.word)
 
     def _closest(self, motion: Motion[Machine], place: int, contact: int) -> tuple[float, np.ndarray, int]:
-        """Where the guards of a contact come closest to zero in a flight: clock from its start, state, sign of the guard's event."""
+        """Return the point in a flight at which the guards of a contact are closest to zero.
+
+        Returns
+        -------
+        clock : float
+            Since the start of the flight.
+        state : float array (n,)
+        sign : int
+            Sign of the guard's event.
+        """
         compiled, e = motion.model.compiled, motion.model.equations
         mode = motion.word.entries(place)
         key = e.pattern_key(mode)
@@ -190,6 +202,6 @@ class PageFlow(Flow[Machine]):
 
 
 def unmoved(machine: Machine) -> list[int]:
-    """States that no impulse of a wall moves."""
+    """Return the states that no wall changes by an impulse."""
     pushed = {name for contact in machine.contacts if isinstance(contact, Wall) for name in contact.push}
     return [j for j, name in enumerate(machine.states) if name not in pushed]

@@ -1,8 +1,11 @@
-"""Margins of an orbit of a declared machine: nothing may happen that is not in its word, and what is in it must.
+"""Margins of an orbit of a declared machine: they are positive if exactly the events of the word happen.
 
-Per node and the flight after it: for every contact the least value that its guard has in that flight (at the ends, unless the event
-there is its own, and at every minimum inside, found as roots of the guard's rate in the Taylor steps); the strength of the event;
-the duration.
+For each node and the flight after it:
+
+- for every contact, the smallest value of its guard in the flight: at both ends (unless that event belongs to the contact), and at every
+  minimum inside, found as a root of the guard's rate in the Taylor steps;
+- the strength of the event;
+- the duration of the flight.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> None:
-    """All margins of a linearised solution, shape (L (contacts + 2),); infinity where one does not apply."""
+    """Write all margins of a linearised solution into `row`, shape (L (contacts + 2),); infinity if one does not apply."""
     n, length, contacts = data.size, data.length, data.contacts
     nodes = np.asarray(u).reshape(length, n + 1)
     begin, end = data.clocks(nodes)
@@ -27,7 +30,7 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
     table[:] = np.inf
     table[:, contacts + 1] = (end - begin) / data.clock_rate(work.numbers)
     drift = max((abs(work.drift[j]) for j in data.pinned), default=0.0)
-    if drift > EVENTS.still:  # it comes back shifted: no orbit
+    if drift > EVENTS.still:  # the motion returns shifted, so it is no orbit
         table[:, contacts + 1] = -drift
     for values, guards, watch, places in data.guard_groups:
         m, count = len(places), len(guards)
@@ -74,7 +77,7 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
 
 
 def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -> None:
-    """How definite the events at both ends of flight i are, as far as this guard tells."""
+    """Write the strength of the events at both ends of flight i, as far as it follows from this guard."""
     column = data.contacts
     following = (i + 1) % data.length
     if guard.contact == first.contact:
