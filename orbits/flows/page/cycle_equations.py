@@ -1,12 +1,12 @@
-"""The equations of a declared machine's cycles, flight by flight, their linear algebra, and the kernels round it.
+"""The equations of a declared machine's cycles, flight by flight, and their kernels.
 
 Node i = (c_i, x_i): the clock and the states just after event i; of a self-excited machine c_i is the duration of the flight that
-follows. Flight i leads from x_i to y_i; with g the function that is zero at event i + 1 and J what the event does to the states,
+follows. Flight i leads from x_i to y_i. With g the function that is zero at event i + 1, and J the event's map of the states,
 
-    g(y_i) = 0,    J(y_i) - x_{i+1} = 0,
+    g(y_i) = 0,    J(y_i) - x_{i+1} = 0
 
-n + 1 equations for n + 1 unknowns. The clock of the forcing is the phase psi: dx/dpsi = f/Omega, so that y_i depends on c_i and
-c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
+are n + 1 equations for n + 1 unknowns. The clock of the forcing is the phase psi: dx/dpsi = F = f/Omega. Therefore y_i depends on c_i
+and c_{i+1} only as ends of the flight: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from orbits.flows.trajectory import TWO_PI
 from orbits.integrators.engine import engine
 from orbits.settings import SOLVING
 
-CYCLIC = 120  # unknowns from which elimination by blocks is faster
-AHEAD = 2.0  # periods of a forced machine: in a flight that is longer Newton's method has lost its way
+CYCLIC = 120  # number of unknowns above which block elimination is faster
+AHEAD = 2.0  # longest flight of a forced machine, in periods of the closure; if longer, Newton's method has diverged
 
 
 def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
-    """Integrate every flight, into `work.flown`; False if one blows up."""
+    """Integrate every flight into `work.flown`; return False if one diverges."""
     numbers, flown = work.numbers, work.flown
     for flight, many, places in data.flight_groups:
         alone = places
@@ -50,7 +50,7 @@ def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, wo
 
 
 def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
-    """The blocks of the last row, closed by the mirror."""
+    """Return the blocks of the last row, with the closure by the mirror."""
     own, following = work.own[-1], work.following[-1] * data.turned
     for row, _ in data.still:
         own = own.copy()
@@ -65,7 +65,7 @@ def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
 def by_blocks(
     data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
-    """The bordered system by blocks, as the cycle has them; returns the determinant's sign."""
+    """Solve the bordered system by block elimination; return the sign of the determinant."""
     length, d = data.length, data.size + 1
     blocks = np.empty((length, d, 2 * d))
     blocks[:-1, :, :d], blocks[:-1, :, d:] = work.own[:-1], work.following[:-1]
@@ -74,7 +74,9 @@ def by_blocks(
     columns[:, :, 0], columns[:, :, 1], columns[:, :, 2] = work.derivative, -work.residual, 0.0
     rows, foot = border[:-1].reshape(length, 1, d), np.array([[border[-1], target, 1.0]])
     back = slice(None, None, -1) if work.turned[0] else slice(None)
-    if work.turned[0]:  # each column of blocks becomes a row; backwards its neighbour follows again
+    if work.turned[
+        0
+    ]:  # blocks of a column become those of a row; in reversed order the neighbour follows again
         before = np.roll(blocks[:, :, d:], 1, axis=0)
         blocks = np.concatenate([blocks[:, :, :d], before], axis=1).transpose(0, 2, 1)[back]
         columns, rows = columns[back], rows[back]
@@ -87,7 +89,7 @@ def by_blocks(
 
 
 def factors(data: Pieces, work: Work) -> np.ndarray:
-    """Derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, states alone otherwise."""
+    """Return the derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, otherwise of the states alone."""
     own, following = work.own, work.following
     with np.errstate(all="ignore"):
         if data.forced:
@@ -98,14 +100,14 @@ def factors(data: Pieces, work: Work) -> np.ndarray:
             through = own[:, :, 1:]
             duration = -through[:, :1, :] / own[:, 0, 0][:, None, None]
             result = through[:, 1:, :] + own[:, 1:, :1] * duration
-    if data.twist < 0.0:  # the mirror, after the last flight: the clock stays, the states turn
+    if data.twist < 0.0:  # the mirror after the last flight: the states change sign, the clock does not
         result = result.copy()
         result[-1, (1 if data.forced else 0) :, :] *= -1.0
     return result
 
 
 def multipliers(data: Pieces, work: Work) -> np.ndarray:
-    """Multipliers of the closed map between event surfaces, largest first; the one that is always zero is left out."""
+    """Return the multipliers of the closed map between event surfaces, largest first, without the one that is always zero."""
     chain = factors(data, work)
     if not np.all(np.isfinite(chain)):
         return np.full(data.n_multipliers, np.nan, complex)
@@ -119,7 +121,9 @@ def multipliers(data: Pieces, work: Work) -> np.ndarray:
     else:
         values = _periodic(chain, size)
     values = values[np.argsort(-np.abs(values), kind="stable")]
-    for _ in range(data.trivial):  # a motion that may be shifted as a whole, a friction that sticks for ever
+    for _ in range(
+        data.trivial
+    ):  # trivial ones: of motions that can be shifted as a whole, and of frictions that stick for ever
         values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
     return values[: data.n_multipliers]
 
@@ -131,14 +135,14 @@ def _periodic(chain: np.ndarray, size: int) -> np.ndarray:
 
 
 class PageKernels(PlainKernels[Pieces, Work]):
-    """The functions that a continuation calls: plain Python round integrated flights."""
+    """Kernels for the cycles of declared machines, in plain Python, with integrated flights."""
 
     column = 3
     accepted = SOLVING.residual
     patience = 0.5
 
     def linearise(self, data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
-        """F, its blocks and its parameter derivative, into `work`; returns the largest absolute residual (inf: not evaluable)."""
+        """Write F, its blocks and its parameter derivative into `work`; return the largest absolute residual (inf if not evaluable)."""
         n, length = data.size, data.length
         nodes = np.asarray(u).reshape(length, n + 1)
         if not (np.all(np.isfinite(nodes)) and math.isfinite(p)) or not data.allowed(p):
@@ -199,13 +203,13 @@ class PageKernels(PlainKernels[Pieces, Work]):
         else:
             own[:, :, 0] = by_end
         derivative[:] = (slopes @ by_number[:, :, None])[:, :, 0] + along
-        for j in data.pinned:  # the motion may be shifted along this state: the mean over the nodes is zero
+        for j in data.pinned:  # the motion can be shifted along this state: require mean zero over the nodes
             work.drift[j] = residual[-1, 1 + j]
             residual[-1, 1 + j] = nodes[:, 1 + j].mean()
             derivative[-1, 1 + j] = 0.0
         for j in data.resting:
             residual[-1, 1 + j] = derivative[-1, 1 + j] = 0.0
-        for row, values in data.still:  # what sticks for ever has no velocity
+        for row, values in data.still:  # of a friction that sticks for ever: require zero velocity
             table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
             residual[-1, 1 + row], derivative[-1, 1 + row] = table[0], table[n + 2]
             work.still[row, 0], work.still[row, 1:] = table[n + 1], table[1 : n + 1]
@@ -213,7 +217,7 @@ class PageKernels(PlainKernels[Pieces, Work]):
         return size if math.isfinite(size) else math.inf
 
     def fill(self, data: Pieces, work: Work, matrix: np.ndarray) -> None:
-        """The blocks of F_u in a dense matrix."""
+        """Write the blocks of F_u into a dense matrix of zeros."""
         d, length = data.size + 1, data.length
         last_own, last_following = closing(data, work)
         for i in range(length - 1):
@@ -239,35 +243,35 @@ class PageKernels(PlainKernels[Pieces, Work]):
         step: np.ndarray,
         tangent: np.ndarray,
     ) -> float:
-        """Of a long cycle by blocks."""
+        """Solve the bordered system (see `PlainKernels.bordered`); long cycles by block elimination."""
         if data.dimension > CYCLIC and not data.pinned and native():
             return by_blocks(data, work, border, target, step, tangent)
         return super().bordered(data, work, border, target, step, tangent)
 
     def assign(self, data: Pieces, other: Pieces, value: float) -> None:
-        """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+        """Set, in ``data`` and in place, the parameter that varies in ``other``."""
         data.params[other.index] = value
         data.base_numbers[:, other.index] = value
 
     def flip(self, data: Pieces, work: Work, sign: float) -> None:
-        """Turn F_u to perturbations that change sign over the period (sign = -1), and back (sign = 1)."""
+        """Turn F_u into the matrix for perturbations that change sign over the period (sign = -1), and back (sign = 1)."""
         work.following[-1] *= -1.0
 
     def transpose(self, data: Pieces, work: Work, column: np.ndarray, other: Work) -> None:
-        """The transposed F_u, with another last column, into another workspace."""
+        """Write the transposed F_u, with another last column, into another workspace."""
         for name in ("own", "following", "drift", "still", "numbers"):
             getattr(other, name)[:] = getattr(work, name)
         other.derivative.reshape(-1)[:] = column
         other.turned[0] = 1.0
 
     def matrix(self, data: Pieces, work: Work) -> np.ndarray:
-        """F_u as it stands in a workspace, shape (N, N)."""
+        """Return F_u as a workspace holds it, shape (N, N)."""
         found = np.zeros((data.dimension, data.dimension))
         self.fill(data, work, found)
         return found
 
     def inspect(self, data: Pieces, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> None:
-        """Multipliers as (re, im) pairs, then the margins, into `row`."""
+        """Write multipliers as pairs (re, im), then the margins, into `row`."""
         m = data.n_multipliers
         row[: 2 * m].view(np.complex128)[:] = multipliers(data, work)
         fill_margins(data, u, work, row[2 * m :])
@@ -277,21 +281,21 @@ KERNELS = PageKernels()
 
 
 class PageEquations(Pieces):
-    """Flight by flight, in numpy; made as `Pieces` are."""
+    """The equations of one word's cycles; constructed like `Pieces`."""
 
     # ------------------------------------------------------------------ numerics
     @property
     def data(self) -> PageEquations:  # type: ignore[override]
-        """Itself."""
+        """The equations themselves."""
         return self
 
     @property
     def kernels(self) -> PageKernels:
-        """In plain Python."""
+        """The kernels, in plain Python."""
         return KERNELS
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
-        """Of the impact at a place: the rate of its wall's gap; the wall's push changes it."""
+        """Return the rate of the wall's gap after the impact at a place, and its derivatives; `push` is the wall's impulse direction."""
         compiled, d = self.model.compiled, self.size + 1
         node = u[place * d : (place + 1) * d]
         numbers = compiled.numbers(self.values(p), self.word.entries(place))
@@ -300,18 +304,18 @@ class PageEquations(Pieces):
         return Approach(float(row[0]), np.append(0.0, row[1:d]), 0.0, np.append(0.0, row[d:]))
 
     def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, None] | None:
-        """Derivatives of each node by the one before, the mirror in the last."""
+        """Return the derivatives of each node by the one before, the mirror included in the last; None if not evaluable."""
         if not np.isfinite(self.kernels.linearise(self, u, p, self.scratch)):
             return None
         with np.errstate(all="ignore"):
             return factors(self, self.scratch), None
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
-        """Unknowns, shape (N,), from the nodes of the whole cycle; of a motion without events the first node tells the others."""
+        """Return the unknowns, shape (N,), from the nodes of the whole cycle; without events, nodes are computed from the first if their number differs."""
         often = self.length * (2 if self.symmetric else 1) // self.periods
         apart = (
             float(np.ptp(nodes[:2, 0])) * often / TWO_PI
-        )  # 1 where they are as far from one another as here
+        )  # distance of the given nodes relative to that of the unknown nodes
         if not len(self.word) and self.length > 1 and abs(apart - 1.0) > 0.1:
             nodes = strobed(self.model, self.word, self.periods, nodes[0], self.params, often)
         return super().reduce(nodes)

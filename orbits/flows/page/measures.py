@@ -20,9 +20,12 @@ from orbits.words import Word
 
 
 def names(model: Machine) -> tuple[str, ...]:
-    """max_x, min_x and max_abs_x (the larger of their sizes) over the period, first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
-    event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact); forces and energies at the contacts
-    (`orbits.machines.page.patterns`), the energies per period of the orbit."""
+    """Return the names of all measures of a machine.
+
+    - Of every state x: ``max_x``, ``min_x`` and ``max_abs_x`` over the period, ``first_x`` after the first event, ``strobe_x`` at phase zero.
+    - ``phase`` of the first event, ``period``, ``rate`` (2 pi / period), ``approach_speed`` of the fastest impact.
+    - Forces and energies at the contacts (`orbits.machines.page.patterns`); the energies are per period of the orbit.
+    """
     what = OF_A_STATE if model.forced else OF_A_STATE[:-1]
     own = [f"{kind}_{state}" for state in model.states for kind in what]
     return (
@@ -38,12 +41,12 @@ def names(model: Machine) -> tuple[str, ...]:
 def measure(
     model: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
-    """Values, each of shape (m,), of solutions with nodes (m, L, n + 1) and parameters (m, P).
+    """Return measures by name, each of shape (m,), of solutions with nodes (m, L, n + 1) and parameters (m, P).
 
     Raises
     ------
     KeyError
-        If there is no such measure.
+        If a name is unknown.
     """
     known = names(model)
     for name in wanted:
@@ -77,12 +80,14 @@ def measure(
     return {name: result[name] for name in wanted}
 
 
-_LOADS = frozenset(("impact", "impulse", "friction", "mean", "work", "peak"))  # how their names begin
+_LOADS = frozenset(
+    ("impact", "impulse", "friction", "mean", "work", "peak")
+)  # first parts of the names of loads
 
 
 @dataclass(frozen=True, eq=False)
 class Solutions:
-    """Solutions with one word, as `measure` is given them, and what several measures need."""
+    """Solutions with one word, and intermediate results that several measures need."""
 
     machine: Machine
     word: Word
@@ -92,7 +97,7 @@ class Solutions:
 
     @cached_property
     def period(self) -> np.ndarray:
-        """In the machine's time, shape (m,)."""
+        """Periods in the machine's time, shape (m,)."""
         if not self.machine.forced:
             return self.nodes[:, :, 0].sum(axis=1)
         return 2.0 * np.pi * self.periods / np.asarray(self.machine.phase_speed(self.params))
@@ -112,7 +117,7 @@ class Solutions:
         return [(i, letter) for i, letter in letters[: self.nodes.shape[1]] if letter.kind == HIT]
 
     def flights(self, k: int) -> Iterator[tuple[tuple[int, ...], np.ndarray, float, float]]:
-        """Mode, first state, clock at the beginning and at the end of every flight of solution k."""
+        """Yield mode, first state, and clock at the beginning and the end of every flight of solution k."""
         nodes, begin = self.nodes[k], np.zeros(self.nodes.shape[1])
         end = nodes[:, 0]
         if self.machine.forced:
@@ -121,7 +126,7 @@ class Solutions:
             yield self.word.entries(i), nodes[i, 1:], float(begin[i]), float(end[i])
 
     def loads(self, rubbing: bool) -> dict[str, np.ndarray]:
-        """Measures of `machine.load_names`, those of friction if it is asked; the sums of impacts are taken wall by wall."""
+        """Return the measures of `machine.load_names`, with losses of friction if `rubbing`; sums over impacts are taken wall by wall."""
         machine, params = self.machine, self.params
         walls, held = [machine.contacts[j].letter for j in machine.equations.gap], None
         if "peak_force" in machine.load_names:
@@ -143,7 +148,7 @@ class Solutions:
 
     @cached_property
     def extremes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest and smallest value of every state over the period, shape (m, n): at the events, and where a rate is zero between them."""
+        """Largest and smallest value of every state over the period, shape (m, n): at the events and at zeros of the rate between them."""
         largest, smallest = self.nodes[:, :, 1:].max(axis=1), self.nodes[:, :, 1:].min(axis=1)
         for k in range(len(self.nodes)):
             for mode, state, begin, end in self.flights(k):
@@ -169,7 +174,7 @@ class Solutions:
 def farthest(
     machine: Machine, mode: tuple[int, ...], state: np.ndarray, begin: float, end: float, params: np.ndarray
 ) -> np.ndarray:
-    """States on a flight, shape (k, n): its ends, and where a rate is zero in between."""
+    """Return the states at the ends of a flight and at zeros of a rate in between, shape (k, n)."""
     watch = machine.compiled.extremes(machine.equations.pattern_key(mode))
     numbers = machine.compiled.numbers(params, mode)
     rows = [state]
@@ -181,16 +186,16 @@ def farthest(
 
 
 PLACES, WEIGHTS = np.polynomial.legendre.leggauss(16)
-PIECE = 0.5 * math.pi  # of the clock: as much of a flight is integrated at once
+PIECE = 0.5 * math.pi  # longest interval of the clock for one quadrature rule
 
 
 class Impacts:
-    """Impacts on one wall: arrays of speeds before them [m/s], the wall's restitution, and masses of the relative motion [kg]."""
+    """Impacts on one wall: speeds before them [m/s], the wall's restitution, and masses of the relative motion [kg], as arrays."""
 
     def __init__(
         self, machine: Machine, wall: int, after: np.ndarray, clocks: np.ndarray, params: np.ndarray
     ) -> None:
-        """After impacts in states (m, n) at `clocks` (m,) with parameters (m, P); a page without energy has masses of 1."""
+        """Compute from states after the impacts (m, n), `clocks` (m,) and parameters (m, P); without a declared energy the masses are 1."""
         numbers = np.hstack([params, np.zeros((len(params), len(machine.equations.signed)))])
         known = machine.equations.energy is not None
         rows = (machine.compiled.loads if known else machine.compiled.rebound)(wall)(after, clocks, numbers)
@@ -204,14 +209,14 @@ class Impacts:
 
     @property
     def losses(self) -> np.ndarray:
-        """Energy of the relative motion that each takes, (1 - r^2) m s^2/2 [J]."""
+        """Energy of the relative motion lost in each impact, (1 - r^2) m s^2/2 [J]."""
         return (1.0 - self.restitution**2) * (0.5 * self.mass * self.speeds**2)
 
 
 def friction_work(
     machine: Machine, mode: tuple[int, ...], state: np.ndarray, begin: float, end: float, params: np.ndarray
 ) -> float:
-    """Energy that frictions take on a flight [J], by Gauss-Legendre quadrature on pieces of it."""
+    """Return the energy lost in frictions on a flight [J], by Gauss-Legendre quadrature on pieces of it."""
     key = machine.equations.pattern_key(mode)
     if not end > begin:
         return 0.0

@@ -1,4 +1,4 @@
-"""The flights of the cycles with one word of a declared machine: what starts, flies and ends each of them, compiled, and states on the way."""
+"""The parts of the cycles with one word of a declared machine: compiled starts, flights and events, and states between them."""
 
 from __future__ import annotations
 
@@ -24,17 +24,21 @@ if TYPE_CHECKING:
 
 STROBED = Letter("", -1, STROBE)
 TOGETHER = 4
-"""Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
-states 11 to 17 in place of 24 to 35. With fewer, half empty vectors gain less than another integrator costs to compile."""
+"""Smallest number of flights in one mode that are integrated together in vectors: a flight of two states then takes 11 to 15 us in place
+of 35 to 40, of four states 11 to 17 in place of 24 to 35. With fewer flights the gain is less than the compilation of another integrator."""
 
 
 def owned(word: Word, place: int) -> frozenset[int]:
-    """The contacts of which an event says itself what their guards are at it.
+    """Return the contacts whose guards are known to vanish or change at an event, so that their values there are no margins.
 
-    Its own; those that an impact turns; and, where a crossing is next to an impact that may jump over it, that impact's wall: as
-    the two fall together the distance vanishes with the time between them, which is watched. A crossing whose surface moves with the
-    velocity of a friction watches that velocity itself, as its own strength; next to it, a turn or stick of that friction has the
-    surface at a distance that vanishes with the time between them.
+    These are:
+
+    - the event's own contact;
+    - contacts whose sign the impact sets;
+    - at a crossing of a switch next to an impact that may jump over it: that impact's wall. As crossing and impact coincide, the distance
+      vanishes with the time between them, which has a margin of its own;
+    - at an event of a switch whose surface moves with a friction's velocity: that friction, because the velocity is the strength of the
+      crossing; and at a turn or stick of the friction next to the crossing: the switch, whose distance vanishes with the time between them.
     """
     if not len(word):
         return frozenset()
@@ -51,8 +55,10 @@ def owned(word: Word, place: int) -> frozenset[int]:
 
 
 def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
-    """States along which any motion with this word may be shifted: no rate and no event of the word knows them (an absorber that slides between its
-    walls while another one hits its own)."""
+    """Return the states along which every motion with this word can be shifted: no rate and no event of the word depends on them.
+
+    An example is an absorber that slides between its walls while another one hits its own.
+    """
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
     for i, mode in enumerate(word.contact_modes):
@@ -75,7 +81,10 @@ def flown(
     places: np.ndarray,
     ahead: np.ndarray,
 ) -> np.ndarray:
-    """States, shape (m, n), so long (clock, shape (m,)) after the beginnings of flights `places`: flight i begins in states[i] at begins[i], in modes[i]."""
+    """Return states, shape (m, n), at clocks `ahead` (m,) after the beginnings of the flights `places` (m,).
+
+    Flight i begins in states[i] at the clock begins[i], in modes[i].
+    """
     compiled, e, out = machine.compiled, machine.equations, np.empty((len(ahead), machine.size))
     for i in np.unique(places).tolist():
         here = np.flatnonzero(places == i)
@@ -91,7 +100,7 @@ def flown(
 def strobed(
     machine: Machine, word: Word, periods: int, node: np.ndarray, params: np.ndarray, often: int = 1
 ) -> np.ndarray:
-    """Nodes of a motion without events, so often per forcing period from one of them on to its return, shape (often periods + 1, n + 1)."""
+    """Return nodes of a motion without events, `often` per forcing period from `node` to its return, shape (often periods + 1, n + 1)."""
     ahead = TWO_PI / often * np.arange(often * periods + 1)
     places = np.zeros(len(ahead), int)
     states = flown(machine, params, word.contact_modes, node[None, 1:], node[:1], places, ahead)
@@ -113,11 +122,11 @@ class Work(NamedTuple):
     numbers: np.ndarray
     drift: np.ndarray
     still: np.ndarray
-    turned: np.ndarray  # 1 where F_u stands for its transpose
+    turned: np.ndarray  # 1 if the blocks stand for the transposed F_u
 
 
 def workspace(length: int, states: int, numbers: int) -> Work:
-    """Arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
+    """Return arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
     L, n, d = length, states, states + 1
     return Work(
         np.zeros((L, d)),
@@ -137,7 +146,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
 
 
 class Pieces(Equations[Machine]):
-    """Flight by flight, in numpy; a page has no units of its own."""
+    """Parts of the equations of one word's cycles, flight by flight, in numpy; unknowns are in the machine's own units."""
 
     def __init__(
         self,
@@ -149,8 +158,8 @@ class Pieces(Equations[Machine]):
         symmetric: bool = False,
     ) -> None:
         self.index = machine.place_of(parameter)
-        # a forced motion without events has a node for each of its forcing periods: doubled it is one with twice as many; for each half of them
-        # where that is followed by its image
+        # a forced motion without events has a node for each of its forcing periods, so that a doubled motion has twice as many; if each half
+        # period may be followed by its mirror image, a node for each half period
         mirrored = machine.has_mirror(np.array(params, dtype=float), parameter)
         halves = 2 if mirrored and word.mirror_symmetric_halves else 1
         whole = len(word) or (halves * int(periods) if machine.forced else 1)
@@ -179,7 +188,7 @@ class Pieces(Equations[Machine]):
         self._assign()
 
     def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Values], ...]:
-        """For each friction that sticks for ever: the state whose closing its velocity replaces, and the velocity compiled."""
+        """Return, for each friction that sticks for ever, the state whose closure its velocity replaces, and the compiled velocity."""
         e, found, taken = self.model.equations, [], set(self.loose)
         for j in frictions:
             known = variables_of(e.velocity[j])
@@ -191,8 +200,10 @@ class Pieces(Equations[Machine]):
         return tuple(found)
 
     def _resting(self, frictions: Sequence[int]) -> tuple[int, ...]:
-        """The places of what sticks for ever: states whose rate is a velocity that is zero all along. Their closing says nothing, and is
-        replaced by that they stay where they are."""
+        """Return the positions that rest for ever: states whose rate is a velocity that is zero all the time.
+
+        Their closure is always fulfilled; it is replaced by the condition that they keep their values.
+        """
         e, names = self.model.equations, self.model.equations.layout.states
         patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.contact_modes)]
         velocities = [variables_of(e.velocity[j]) & set(names) for j in frictions]
@@ -208,7 +219,7 @@ class Pieces(Equations[Machine]):
         )
 
     def _slips_one_way(self, j: int) -> bool:
-        """Whether a friction slips, and always to the same side, though its velocity is the rate of a state, which then does not come back."""
+        """Return whether a friction only slips, always in one direction, while its velocity is the rate of a state, which cannot return."""
         e = self.model.equations
         modes = {mode[j] for mode in self.word.contact_modes} - {STUCK}
         if j not in e.velocity or modes not in ({SLIDE_BACK}, {SLIDE_ON}):
@@ -221,7 +232,7 @@ class Pieces(Equations[Machine]):
         )
 
     def _assign(self) -> None:
-        """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
+        """Compile flights, events and guards of the word, in groups that are evaluated together."""
         compiled, e, word = self.model.compiled, self.model.equations, self.word
         modes = [word.entries(i) for i in range(self.length)]
         keys = [e.pattern_key(mode) for mode in modes]
@@ -263,7 +274,7 @@ class Pieces(Equations[Machine]):
 
     @cached_property
     def guard_groups(self) -> list[tuple[Values, list[Guard], Watch, list[int]]]:
-        """(guards compiled, guards, watch, flights) per pattern."""
+        """(compiled guards, guards, watch, flights) for each pattern."""
         compiled, e = self.model.compiled, self.model.equations
         return [
             (
@@ -276,11 +287,11 @@ class Pieces(Equations[Machine]):
         ]
 
     def allowed(self, p: float) -> bool:
-        """Whether there may be such motions at a value of the parameter."""
+        """Return whether motions with this word are possible at a value of the parameter."""
         return self.comes_back and not (self.model.phase_rate == self.parameter and p <= 0.0)
 
     def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Clock at the beginning and the end of every flight, from the nodes (L, n + 1)."""
+        """Return the clocks at the beginning and the end of every flight, from the nodes (L, n + 1)."""
         if not self.forced:
             return np.zeros(self.length), nodes[:, 0].copy()
         begin = nodes[:, 0].copy()
@@ -290,9 +301,9 @@ class Pieces(Equations[Machine]):
         return begin, end
 
     def clock_rate(self, numbers: np.ndarray) -> Reals:
-        """Clock per unit of time, from runtime numbers (L, ...)."""
+        """Return the clock per unit of time, from runtime numbers (L, ...)."""
         return self.model.phase_speed(numbers)
 
     def workspace(self) -> Work:
-        """Arrays for the kernels."""
+        """Return new arrays for the kernels."""
         return workspace(self.length, self.size, self.base_numbers.shape[1])

@@ -1,4 +1,4 @@
-"""A page's motion on its way (`orbits.flows.protocol`), round the stepper, and as it is kept: exact event lists, and the motion between them."""
+"""Simulator of declared machines (`orbits.flows.protocol.Simulator`), and their simulated motions with exact events."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from orbits.machines.stepping import EVENTS_FULL, REST, TIME_REACHED
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 
-SAMPLES = 2000  # of a run, for its extremes
-AWAY = 1000.0  # clock without an event of a cycle after which a motion does not come back to it
-LONGEST_WORD = 400  # events of its longest cycle
-REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
-WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
-LATE = 50  # instants of its motion by which it is told whether it has come to rest
-FOREVER = 100_000.0  # clock after which a run that waits for events gives up
+SAMPLES = 2000  # samples of a run, for its extremes
+AWAY = 1000.0  # longest clock without the section's event before a motion counts as not returning
+LONGEST_WORD = 400  # events of the longest cycle of a self-excited machine
+REACH = 2.0  # box of starts relative to the reach of the motion from rest
+WARM = 60.0  # length of the motion from rest that sets the box of starts, in forcing periods
+LATE = 50  # samples that decide whether a self-excited motion has come to rest
+FOREVER = 100_000.0  # longest clock without an event in a run of unlimited length
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +37,9 @@ class PageTrajectory(Trajectory):
     Attributes
     ----------
     states : float array (m + 1, n)
-        At the start, and just after every event.
+        States at the start and just after every event.
     modes : list of tuple of int, m + 1 entries
-        After them.
+        Modes after the start and after every event.
     events : list of (contact, kind, sign), m entries
     last : float array (n,)
         State at the end.
@@ -52,36 +52,39 @@ class PageTrajectory(Trajectory):
 
     @property
     def points(self) -> np.ndarray:
-        """The states just after the events."""
+        """The states just after the events, shape (m, n)."""
         return self.states[1:]
 
     @property
     def nodes(self) -> np.ndarray:
-        """What continuation solves for, at every event of a forced machine, shape (m, n + 1)."""
+        """Unknowns of continuation at every event of a forced machine, shape (m, n + 1)."""
         return np.column_stack([self.clocks[1:], self.points])
 
     @cached_property
     def letters(self) -> list[str]:
-        """The events as they are written; "(R" and "R)" are where wall R begins and ends to hold."""
+        """Letters of the events; "(R" and "R)" are begin and end of a hold on wall R."""
         return [letter_of(self.model, event) for event in self.events]
 
     @property
     def occurrences(self) -> list[tuple[str, tuple[int, ...]]]:
-        """Letters and modes."""
+        """Letter of each event with the modes after it."""
         return [*zip(self.letters, self.modes[1:])]
 
     @property
     def held(self) -> bool:
-        """Whether one of the walls holds the body from the beginning to the end."""
+        """Whether one of the walls holds the body during the whole run."""
         return any(all(mode[j] == HELD for mode in self.modes) for j in self.model.equations.gap)
 
     @property
     def reason(self) -> str:
-        """Why the run ended."""
+        """The reason for the end of the run."""
         return f"no further event within {FOREVER:g} of the clock" if self.stopped else super().reason
 
     def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
-        """Word and nodes; of a self-excited machine the first duration is that since the event before, or the cycle's last one again."""
+        """Return word and nodes of the cycle that consists of events `first` to `last` - 1.
+
+        The nodes of a self-excited machine hold durations; the last one, that of the closing flight, is the time since the event before `first`.
+        """
         part = slice(first, last)
         modes = self.modes[1:][part]
         word = Word(tuple(self.letters[part]), tuple(modes), self.model.alphabet)
@@ -91,7 +94,7 @@ class PageTrajectory(Trajectory):
         return word, np.column_stack([clocks, self.points[part]])
 
     def approaches(self, first: int = 0) -> np.ndarray:
-        """The gap's rate after each impact over restitution."""
+        """Return the approach speeds of the impacts: the gap's rate after each impact over the restitution."""
         compiled, speeds = self.model.compiled, []
         for k in first + np.flatnonzero(self.hits[first:]):
             contact, clock = self.events[k][0], float(self.clocks[k + 1]) if self.model.forced else 0.0
@@ -101,7 +104,7 @@ class PageTrajectory(Trajectory):
         return np.array(speeds)
 
     def extremes(self, per_period: int = 0) -> dict[str, float]:
-        """Largest and least first state, and the larger of their sizes."""
+        """Return largest and smallest value, and largest absolute value, of the first state."""
         x = self.sample(np.linspace(self.clocks[0], self.finish, SAMPLES))[:, 0]
         first = self.model.states[0]
         return {
@@ -111,23 +114,23 @@ class PageTrajectory(Trajectory):
         }
 
     def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
-        """The first state over the phase; its size where this is what the machine shows."""
+        """Return clocks, and the first state there (its absolute value if that is the machine's response)."""
         count = max(2, math.ceil(per_period * self.lasted))
         clocks = np.linspace(self.clocks[0], self.finish, count, endpoint=False)
         x, first = self.sample(clocks)[:, 0], self.model.states[0]
         return clocks, np.abs(x) if self.model.response == f"max_abs_{first}" else x
 
     def sample(self, clocks: np.ndarray) -> np.ndarray:
-        """States, shape (m, n), at clocks within the run."""
+        """Return the states, shape (m, n), at clocks within the run."""
         return self.at(np.asarray(clocks, dtype=float))
 
     def flown(self, places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-        """States."""
+        """Return the states at clocks `ahead` after the start (place 0) or event `place`, shape (m, n)."""
         return flown(self.model, self.params, self.modes, self.states, self.clocks, places, ahead)
 
 
 def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:
-    """How an event is written."""
+    """Return the letter of an event."""
     contact, kind, sign = event
     if kind == HOLD:
         return f"({machine.contacts[contact].letter}"
@@ -137,7 +140,7 @@ def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:
 
 
 def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
-    """A state moved out of the walls that lie over it, shape (S,)."""
+    """Return a state moved out of the walls that it penetrates, shape (S,)."""
     machine, state = stepper.machine, np.array(state, dtype=float)
     stepper.state, stepper.clock = state, clock
     stepper.modes = machine.rest_mode(stepper.params, state, stepper.clock)
@@ -159,7 +162,7 @@ def follow(mover: Stepper | Variations, until: float) -> None:
 
 
 def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
-    """Run on for a length of the clock, or so many events."""
+    """Run on for a length of the clock or at most `most` events, and return the motion."""
     clocks = [stepper.base + stepper.clock]
     states, modes, events = [stepper.state.copy()], [stepper.modes], []
     until = clocks[0] + (FOREVER if math.isinf(length) else length)
@@ -181,7 +184,7 @@ def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
 
 
 class PageSimulator(Simulator[Machine, PageTrajectory]):
-    """See the contract at the top of `orbits.flows.protocol`."""
+    """Moves one motion of a declared machine on; see `orbits.flows.protocol.Simulator`."""
 
     watched = (3000.0, 3000)
     waiting = Waiting(100.0, 4, 0, 2, SIMULATING.returned_page, 5, 0.0, 50_000.0)
@@ -194,11 +197,11 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         self.stepper = Stepper(machine, params)
         self.forced, self.names = machine.forced, machine.states
         self.roomy = machine.size > 2
-        self.hard = np.zeros(machine.size, dtype=bool)  # a start within a wall is refused
+        self.hard = np.zeros(machine.size, dtype=bool)  # a start within a wall raises an error
 
     @property
     def modes(self) -> tuple[int, ...]:
-        """What the contacts do."""
+        """Modes of the contacts."""
         return self.stepper.modes
 
     @property
@@ -208,16 +211,16 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
 
     @property
     def time(self) -> float:
-        """Forcing periods; of a self-excited machine its time over 2 pi."""
+        """Time: forcing periods, or time over 2 pi of a self-excited machine."""
         return (self.stepper.base + self.stepper.clock) / TWO_PI
 
     @property
     def point(self) -> np.ndarray:
-        """The states."""
+        """Present states."""
         return self.stepper.state.copy()
 
     def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None:
-        """Begin at a point."""
+        """Begin at a point; the modes follow from it if they are not given."""
         self.stepper.start(point, TWO_PI * time, modes)
 
     def put(self, start: Mapping[str, float] | np.ndarray | None) -> None:
@@ -226,7 +229,7 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         self.stepper.start(state[1:], float(state[0]))
 
     def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray:
-        """Clock and states of a start, shape (n + 1,); it may lie within a wall."""
+        """Return clock and states of a start, shape (n + 1,); the start may lie within a wall."""
         if isinstance(start, np.ndarray):
             return start
         names = self.model.states
@@ -235,27 +238,27 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
 
     @property
     def state(self) -> np.ndarray:  # type: ignore[override]
-        """Clock and states, shape (n + 1,), from which another simulation goes on."""
+        """Clock and states, shape (n + 1,), from which another simulation can continue."""
         return np.append(self.stepper.clock, self.stepper.state)
 
     def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
-        """Begin where another simulation has ended, moved out of walls that are elsewhere now, its last state changed a little."""
+        """Begin at the final state of another simulation, moved out of walls that have moved; `nudge` is added to the last state."""
         clock = (
             float(state[0]) if len(state) > self.model.size else 0.0
-        )  # older files have no clock of a self-excited machine
+        )  # older files hold no clock for self-excited machines
         self.stepper.start(outside(self.stepper, state[-self.model.size :], clock), clock)
         self.stepper.state[-1] += nudge
 
     def begin(self, word: Word, node: np.ndarray) -> None:
-        """Just after the first event of a cycle."""
+        """Begin just after the first event of a cycle with this word, at the unknowns `node`."""
         self.stepper.start(node[1:], float(node[0]) if self.forced else 0.0, word.entries(0))
 
     def follow(self, until: float) -> None:
-        """Move on."""
+        """Move on to the time `until`."""
         follow(self.stepper, TWO_PI * until)
 
     def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Move on by a period of a cycle, with derivatives; NaN where a wall has held the body."""
+        """Move on by one period of a cycle, and return derivatives; NaN if a wall has held the body."""
         stepper, n = self.stepper, self.model.size
         mover = stepper if index is None else Variations(stepper, index)
         if self.forced:
@@ -274,13 +277,13 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         return np.full((n, n), np.nan), np.full(n, np.nan)
 
     def run(self, periods: float, most: int) -> PageTrajectory:
-        """Move on and keep the motion."""
+        """Move on by `periods` or at most `most` events, and return the motion."""
         return collect(self.stepper, TWO_PI * periods, most)
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere.
+        """Return the counterpart, across the impact, of a point at a wall, and the direction away from the wall; None elsewhere.
 
-        Where the forcing passes phase zero; the points just after the events of a self-excited machine are not distinguished.
+        Only for points of a forced machine at phase zero: points of a self-excited machine are taken just after events.
         """
         if not self.forced:
             return None
@@ -296,7 +299,9 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
             here = here - gaps[j] * slopes / steep**2
             row = compiled.impact_map(j).one(here, 0.0, numbers)
             jump, rate = row[: machine.size] - here, row[machine.size]
-            if rate > 0.0:  # after an impact: the impulse was larger by 1/restitution and the other way round
+            if (
+                rate > 0.0
+            ):  # just after an impact: the impulse back has the opposite sign and is larger by 1/restitution
                 jump = jump / compiled.rebound(j).one(here, 0.0, numbers)[1]
             if rate != 0.0 and np.all(np.isfinite(jump)):
                 return here + jump, slopes / steep
@@ -304,7 +309,7 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
 
     # ------------------------------------------------------------------ settling
     def skip(self, count: float) -> bool:
-        """Move on by so many forcing periods; of a self-excited machine, by so many events, and say whether there were as many."""
+        """Move on by `count` forcing periods (self-excited: events); return whether that many happened."""
         stepper = self.stepper
         if self.forced:
             self.follow(self.time + int(count))
@@ -315,13 +320,13 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         )
 
     def look(self, longest: int) -> PageTrajectory:
-        """Run on for two of the longest recurrences; events of a self-excited machine."""
+        """Run for a little more than two of the longest recurrences (self-excited: as many events)."""
         if self.forced:
             return collect(self.stepper, TWO_PI * (2 * longest + 1), 50 * longest + 2000)
         return collect(self.stepper, SIMULATING.wait, min(2 * LONGEST_WORD, 50 * longest))
 
     def rests(self, run: PageTrajectory, last: bool) -> bool:
-        """Whether a wall holds the body, or a self-excited machine does not move any more."""
+        """Return whether a wall holds the body, or a self-excited machine has stopped moving."""
         if len(run):
             return False
         if run.held or self.forced:
@@ -332,14 +337,14 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         return bool((np.ptp(states, axis=0) <= self.waiting.returned * size).all())
 
     def push(self) -> None:
-        """What sticks must not be moved: it leaves by itself."""
+        """Do nothing: a body that sticks must not be moved, and leaves unstable motions by itself."""
 
     def growth(self) -> tuple[float, float]:
-        """See `orbits.flows.page.variations.growth`."""
+        """Return the largest Lyapunov exponent and its error; see `orbits.flows.page.variations.growth`."""
         return growth(self.stepper)
 
     def section(self) -> tuple[str, np.ndarray]:
-        """Move on to the next whole forcing period, or event."""
+        """Move on to the next whole forcing period (self-excited: the next event)."""
         if self.forced:
             return super().section()
         event = self.stepper.advance(self.stepper.base + self.stepper.clock + SIMULATING.wait)
@@ -347,7 +352,7 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
 
     # ------------------------------------------------------------------ many starts
     def box(self) -> np.ndarray:
-        """What the page says, else twice what the motion from rest reaches in sixty periods."""
+        """Return the machine file's box of starts; for other states, twice the reach of the motion from rest in sixty periods."""
         given, names = self.model.starts, self.model.states
         reached = self._reached() if any(name not in given for name in names) else np.zeros(len(names))
         rows = [[0.0, TWO_PI]] if self.forced else []
@@ -364,17 +369,17 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         except SimulationError:
             reach = zero
         largest, room = float(reach.max()), self._room()
-        if largest < SIMULATING.resting * room:  # it stays where it is
+        if largest < SIMULATING.resting * room:  # the machine stays at rest
             return np.full(self.model.size, room)
         return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
 
     def _room(self) -> float:
-        """The widest gap of a wall at the state; 0 without walls."""
+        """Return the widest gap of a wall at the present state; 0 without walls."""
         values = self.stepper.contact_values()
         return max((float(values[j]) for j in self.model.equations.gap), default=0.0)
 
     def free(self, points: np.ndarray) -> np.ndarray:
-        """Which starts have all gaps open, bool array (m,)."""
+        """Return which starts have no negative gaps, bool array (m,)."""
         machine = self.model
         walls = [*machine.equations.gap]
         if not walls:

@@ -1,12 +1,13 @@
-"""How a simulated motion of a declared machine changes with its beginning and with one of its numbers, from event to event.
+"""Derivatives of a simulated motion of a declared machine by its start and one parameter, and its Lyapunov exponent.
 
-With node i = (c_i, x_i), the clock and the states just after event i, and y the states at the end of the flight (`orbits.flows.page.cycle_equations`),
+With node i = (c_i, x_i), the clock and the states just after event i, and y the states at the end of the flight
+(`orbits.flows.page.cycle_equations`),
 
-    dy = dy/dx (dx_i - F(x_i) dc_i) + F(y) dc + dy/dp dp,    dg = g_y dy + g_c dc + g_p dp = 0,
+    dy = dy/dx (dx_i - F(x_i) dc_i) + F(y) dc + dy/dp dp,    dg = g_y dy + g_c dc + g_p dp = 0.
 
-the second of which gives dc, the change of the event's clock; then dx_{i+1} = J_y dy + J_c dc + J_p dp. So go the saltation matrices of Aizerman
-and Gantmakher, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958) 243. Of a self-excited machine the clock begins anew at each
-event: dc_i = 0.
+The second equation gives dc, the change of the event's clock; then dx_{i+1} = J_y dy + J_c dc + J_p dp. These are the saltation matrices
+of Aizerman and Gantmakher, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958) 243. The clock of a self-excited machine
+restarts at each event: dc_i = 0.
 """
 
 from __future__ import annotations
@@ -23,14 +24,14 @@ from orbits.settings import SIMULATING
 
 
 class Variations:
-    """Derivatives that go along with a stepper.
+    """Derivatives of the states of a stepper, advanced together with it.
 
     Parameters
     ----------
     stepper : Stepper
-        Where the motion begins, at a given clock.
+        At the beginning of the motion, at a given clock.
     index : int
-        The number by which to differentiate: a parameter's place.
+        Place of the parameter by which to differentiate.
     """
 
     def __init__(self, stepper: Stepper, index: int) -> None:
@@ -38,19 +39,19 @@ class Variations:
         self.stepper, self.active = stepper, (index,)
         self._states = np.hstack(
             [np.eye(n), np.zeros((n, 1))]
-        )  # of the node, by the beginning and the number
+        )  # derivatives of the node's states by the start and the parameter
         self._clock = np.zeros(n + 1)
         self._row = np.empty(n + n * (n + 1))
         self._known = True
 
     @property
     def derivatives(self) -> tuple[np.ndarray, np.ndarray]:
-        """Of the states now, by those at the beginning, shape (n, n), and by the number, shape (n,); NaN after a wall has held."""
+        """Derivatives of the present states by those at the beginning, shape (n, n), and by the parameter, shape (n,); NaN after a wall has held."""
         found = self._states if self._known else np.full_like(self._states, np.nan)
         return found[:, :-1].copy(), found[:, -1].copy()
 
     def advance(self, until: float) -> tuple[int, int, int] | None:
-        """`Stepper.advance`, and the derivatives with it."""
+        """Advance stepper and derivatives; see `Stepper.advance`."""
         stepper = self.stepper
         state, modes = stepper.state.copy(), stepper.modes
         begin, since = stepper.clock, stepper.base + stepper.clock
@@ -84,7 +85,7 @@ class Variations:
         moved = self._states
         if forced:
             moved = moved - np.outer(rates.one(state, begin, numbers), self._clock)
-        change = sensitivity[:, :n] @ moved  # of the arrival, at a fixed clock
+        change = sensitivity[:, :n] @ moved  # derivatives of the arrival at a fixed clock
         change[:, -1] += sensitivity[:, n]
         if event is None:
             self._states = change
@@ -105,25 +106,26 @@ class Variations:
 
 
 SAMPLES, BLOCKS = 1200, 20
-PATIENCE, FORGET = 8, 50  # samples waited out; samples in which the neighbours forget how they were put down
+PATIENCE, FORGET = 8, 50  # longest wait for equal modes, in samples; first samples that are left out
 EARLY, CLEAR = (
     4,
     8.0,
-)  # a quarter of the samples are enough where the exponent is positive by so many standard errors
+)  # after 1/EARLY of the samples an exponent above CLEAR standard errors is accepted
 
 
 def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
-    """Exponent per forcing period (of a self-excited machine: per event), and its standard error.
+    """Return the Lyapunov exponent per forcing period (of a self-excited machine: per event), and its standard error.
 
-    After Benettin, Galgani, Giorgilli and Strelcyn (Meccanica 15 (1980) 9): the logarithm of how much the distance of two
-    neighbours grows, averaged; the scatter of twenty blocks gives the error. Samples at which the neighbours are in different
-    modes (one of them is past an event that the other still has before it) are waited out.
+    After Benettin, Galgani, Giorgilli and Strelcyn (Meccanica 15 (1980) 9): the mean logarithm of the growth of the distance between two
+    neighbours; the scatter of twenty blocks gives the error. While the neighbours are in different modes (one of them has passed an event
+    that the other has not yet reached) no sample is taken.
 
     Parameters
     ----------
     stepper : Stepper
         At a state of the motion; it is advanced.
     samples : int
+        Number of samples.
     """
     other = Stepper(stepper.machine, stepper.params)
     generator = np.random.default_rng(1)
@@ -168,7 +170,7 @@ def _distance(stepper: Stepper, other: Stepper) -> tuple[np.ndarray, float]:
 
 
 def _together(stepper: Stepper, other: Stepper) -> bool:
-    """Move both on by a forcing period (or an event); whether they are then in the same modes."""
+    """Move both on by a forcing period (or an event); return whether they are in the same modes then."""
     if not stepper.machine.forced:
         event, image = (
             stepper.advance(stepper.base + SIMULATING.wait),
