@@ -74,9 +74,14 @@ class Conditions:
         )
 
     def eigenvalues(self, jacobian: np.ndarray) -> np.ndarray:
-        """Return the eigenvalues of dF/du without the zeros of the continuous symmetries."""
+        """Return the eigenvalues of dF/du without the zeros of the continuous symmetries.
+
+        dF/du maps the tangents T of the family to zero, so it acts on the unknowns modulo T; each class has one member with dg/du y = 0.
+        """
         n = self.node
-        right, left = null_space(jacobian[n:, :n]), null_space(self.directions.T)
-        return without_roundoff(
-            np.linalg.eigvals(np.linalg.solve(left.T @ right, left.T @ jacobian[:n, :n] @ right))
-        )
+        linear, gradient = jacobian[:n, :n], jacobian[n:, :n]
+        wanted = np.eye(n + self.count)[:, n:]  # dF/du T = 0, dg/du T = 1
+        tangents = np.linalg.lstsq(jacobian, wanted, rcond=None)[0][:n]
+        basis = null_space(gradient)
+        image = linear @ basis
+        return without_roundoff(np.linalg.eigvals(basis.T @ (image - tangents @ (gradient @ image))))

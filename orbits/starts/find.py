@@ -202,9 +202,10 @@ def _warn_virtual(orbit: Orbit) -> None:
     if orbit.real:
         return
     least = min(orbit.margins, key=lambda margin: margin.value)
+    events = orbit.word.events
+    place = f" at event {least.segment + 1} ({events[least.segment]})" if events else ""
     warnings.warn(
-        f"the guess leads to an orbit that no machine follows: the margin {least.kind!r} at event {least.segment + 1} "
-        f"({orbit.word.events[least.segment]}) is {least.value:.3g}, below 0; check that phases and positions of the guess belong "
+        f"the guess leads to an orbit that no machine follows: the margin {least.kind!r}{place} is {least.value:.3g}, below 0; check that phases and positions of the guess belong "
         "to one motion, and to this word",
         StartWarning,
         stacklevel=4,
