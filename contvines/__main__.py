@@ -1,4 +1,4 @@
-"""`python -m contvines` does what `contvines` does."""
+"""Run the command line by ``python -m contvines``."""
 
 from contvines.command.entry import main
 

@@ -1,4 +1,4 @@
-"""What a run has already computed: the journal, by which an interrupted one catches up, the result that it leaves, and with what it was made."""
+"""Journals of long computations, from which interrupted runs resume; unfinished results; versions of the software that made a result."""
 
 from __future__ import annotations
 
@@ -16,49 +16,55 @@ from .core.library import variant
 
 
 class Kept(Protocol):
-    """A graph or a chart, as a journal keeps it."""
+    """Protocol of a result that a journal stores: a graph or a chart."""
 
     finished: bool
 
     @property
     def stopped(self) -> bool:
-        """Whether a run with a larger budget may still go on from what the journal has."""
+        """Whether a budget stopped the run, so that a run with a larger budget can continue from the journal."""
         ...
 
     def entries(self) -> Iterable[tuple[str, str, dict[str, Any]]]:
-        """Everything as (kind, key, content); content holds arrays and JSON values by name."""
+        """Yield all parts of the result as (kind, key, content); content maps names to arrays and JSON values."""
         ...
 
 
 class Journal(Protocol):
-    """The contract of a journal.
+    """Protocol of a journal: a store of intermediate results by key.
 
-    The automatic diagram is deterministic. It asks ``recall`` before each chunk of points, each location and each
-    crossing, computes only what is not there, and hands it to ``record``. Running again with the same journal
-    therefore resumes.
+    The automatic diagram is deterministic. Before each chunk of points, each location of a special point and each
+    switch of branches it calls ``recall``; it computes only missing results and passes them to ``record``. The same
+    call with the same journal therefore resumes an interrupted run.
     """
 
     def recall(self, key: str) -> dict[str, Any] | None:
-        """What was recorded under the key: numpy arrays and JSON scalars, lists and dicts; None if nothing."""
+        """Return the values recorded under a key (numpy arrays and JSON scalars, lists and dicts); None if there are none."""
         ...
 
     def record(self, key: str, values: dict[str, Any]) -> None:
-        """Keep the values, as copies but of arrays that nobody can write to; on return they survive a kill."""
+        """Store values under a key.
+
+        Writeable arrays must be copied. A journal on disk must have stored the values durably when this returns: a killed
+        process may not lose them.
+        """
         ...
 
     def checkpoint(self, graph: Kept) -> None:
-        """Called with the graph so far, after each finished branch and at the end (``graph.finished``): what is recorded is of no use then, unless
-        ``graph.stopped``."""
+        """Store the graph so far; called after each finished branch and at the end.
+
+        Once ``graph.finished`` is true the recorded values may be deleted, unless ``graph.stopped``.
+        """
         ...
 
 
 def checked(journal: Journal) -> Journal:
-    """The journal, if it has the methods of the contract.
+    """Return the journal after checking that it has the methods of `Journal`.
 
     Raises
     ------
     ValueError
-        If it has not.
+        If a method is missing.
     """
     missing = [
         name for name in ("recall", "record", "checkpoint") if not callable(getattr(journal, name, None))
@@ -72,7 +78,7 @@ def checked(journal: Journal) -> Journal:
 
 
 class NullJournal:
-    """A ``contvines.journal.Journal`` that keeps nothing."""
+    """A ``contvines.journal.Journal`` that stores nothing."""
 
     def recall(self, key: str) -> dict[str, Any] | None:
         return None
@@ -85,12 +91,14 @@ class NullJournal:
 
 
 class Part:
-    """A part of a journal, for a run inside another one: its keys begin with a prefix, its graph is not kept.
+    """Journal of a run inside another run: it stores in the outer run's journal under prefixed keys, and does not store its graph.
 
     Parameters
     ----------
     journal : Journal
+        Journal of the outer run.
     prefix : str
+        Put before each key.
     """
 
     def __init__(self, journal: Journal, prefix: str) -> None:
@@ -107,7 +115,7 @@ class Part:
 
 
 class MemoryJournal:
-    """A ``contvines.journal.Journal`` in memory, for interactive work: given to the same call again, an interrupted run goes on."""
+    """A ``contvines.journal.Journal`` in memory, for interactive work: the same call with the same journal resumes an interrupted run."""
 
     def __init__(self) -> None:
         self.entries: dict[str, dict[str, Any]] = {}
@@ -127,15 +135,16 @@ class MemoryJournal:
 
 
 class Resumable:
-    """A result that interrupted work may leave.
+    """Base class of results whose computation may be interrupted and resumed.
 
     Attributes
     ----------
     rest : callable or None
-        Goes on with the interrupted work, from what is done, and returns the whole result; None where nothing was interrupted,
-        and in results from files.
+        Resumes the interrupted computation and returns the complete result; None if it was not interrupted, and for
+        results loaded from files.
     origin : mapping
-        Of a result from a file: the ``study`` that the file keeps, seeds included, and with what it was ``made``.
+        For a result loaded from a file: the ``study`` stored in the file, seeds included, and the versions that ``made``
+        it (see `provenance`). Empty otherwise.
     """
 
     rest: Callable[[], Any] | None = None
@@ -143,7 +152,7 @@ class Resumable:
 
     @property
     def stopped(self) -> bool:
-        """Whether a budget is used up: with a larger one the same call goes on."""
+        """Whether a budget stopped the computation; the same call with a larger budget continues it."""
         return False
 
 
@@ -153,7 +162,7 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     graph : Graph, Chart or Survey
-        All that is done; ``contvines.resume(graph)`` goes on.
+        The partial result; ``contvines.resume(graph)`` continues the computation.
     """
 
     def __init__(self, graph: Resumable) -> None:
@@ -164,7 +173,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def unfinished(result: Resumable, rest: Callable[[], Any]) -> None:
-    """Say how interrupted work goes on; a result may be frozen."""
+    """Set the callable that resumes the computation of a result, ``result.rest``, also on a frozen dataclass."""
     object.__setattr__(result, "rest", rest)
 
 
@@ -172,7 +181,7 @@ PACKAGES = ("contvines", "numpy", "scipy")
 
 
 def version_of(package: str) -> str | None:
-    """The installed version of a package; None where it is not installed."""
+    """Return the installed version of a package; None if it is not installed."""
     try:
         return version(package)
     except PackageNotFoundError:
@@ -180,7 +189,7 @@ def version_of(package: str) -> str | None:
 
 
 def provenance() -> dict[str, str]:
-    """Versions of contvines, numpy, scipy and Python, the platform, the core that computes, and the date in UTC.
+    """Return the versions of contvines, numpy, scipy and Python, the platform, the kind of compiled core, and the date in UTC.
 
     Returns
     -------
@@ -198,14 +207,21 @@ def provenance() -> dict[str, str]:
 
 
 def carried(result: Resumable) -> dict[str, Any]:
-    """What an export of a result says of its making: ``made``, of a result from a file as the file has it, ``settings``, and the ``study``, where the file keeps one."""
+    """Return the metadata that exports of a result contain.
+
+    Returns
+    -------
+    dict
+        ``made``: the provenance stored in the result's file, otherwise that of this process; ``settings``; and ``study`` if the
+        result's file contains one.
+    """
     about = {"made": result.origin.get("made") or provenance(), "settings": getattr(result, "settings", {})}
     study = result.origin.get("study")
     return {**about, "study": study} if study else about
 
 
 def comments(result: Resumable) -> list[str]:
-    """`carried` in lines of comments for people: with what it was made, and the study."""
+    """Return the metadata of `carried` as readable comment lines: provenance, then the study's text."""
     about = carried(result)
     study = about.get("study") or {}
     source = study.get("source") or {}
@@ -215,7 +231,7 @@ def comments(result: Resumable) -> list[str]:
 
 
 def as_text(made: dict[str, str]) -> str:
-    """One line for people; empty for a file that does not say with what it was made."""
+    """Format the result of `provenance` as one line; an empty string for an empty dict."""
     if not made:
         return ""
     return (

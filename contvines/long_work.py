@@ -1,11 +1,13 @@
-"""Long work: its progress on a terminal, in a notebook or a log, and Ctrl-C, by which nothing is lost or falsified and no write cut in two.
+"""Progress of long computations on a terminal, in a notebook or a log, and their interruption by Ctrl-C.
 
-`diagram`, `atlas`, `chart` and `survey` go through :func:`carried_out`. It shows their progress, remembers in memory what is done
-where no journal is given, and turns Ctrl-C into :class:`Interrupted`, whose ``graph`` holds all that is done; `resume` goes on.
+`diagram`, `atlas` and `chart` run inside :func:`carried_out`. It shows progress, keeps a journal in memory if none is given, and turns
+Ctrl-C into :class:`Interrupted`, whose ``graph`` is the partial result; `resume` continues.
 
-Python raises KeyboardInterrupt wherever it happens to be. In a callback that compiled code calls it can only be ignored,
-and what the callback was to compute is then wrong; in a write it leaves a transaction open. So there are sections: from
-one that is held the interrupt is raised at the end; from another one at once, and again at the end if it was ignored inside.
+Python raises KeyboardInterrupt at an arbitrary instruction. In a callback from compiled code the exception is lost and the callback's
+result is wrong; in a write it leaves a transaction open. Critical code therefore runs in a :class:`Section`:
+
+- ``HELD`` delays the interrupt to the end of the section;
+- ``OPEN`` lets it through at once, and raises it again at the end if compiled code has ignored it.
 """
 
 from __future__ import annotations
@@ -24,29 +26,29 @@ from typing import Any, Literal, TypeVar
 
 from .journal import Interrupted, Journal, MemoryJournal, Resumable, checked, unfinished
 
-# what `signal` hands on to: it makes enumerations of handlers, which takes longer than solving a point
+# the C module behind `signal`: the functions of `signal` convert handlers to enumerations, which takes longer than solving a point
 _plain = sys.modules["_signal"]
 
 MAIN = threading.main_thread().ident
-"""The thread in which interrupts are raised; sections of others hold nothing and take nothing."""
+"""Identifier of the main thread, the only one in which Python raises interrupts; sections do nothing in other threads."""
 
 
 class _State:
-    wanted = False  # an interrupt has come that nobody has taken
-    held = 0  # held sections that are open
-    alone = False  # the outermost of them listens itself
-    listening = False  # somebody does already
+    wanted = False  # an interrupt has arrived and has not been dealt with
+    held = 0  # number of open held sections
+    alone = False  # the outermost held section has installed the signal handler itself
+    listening = False  # a `listening` context has installed the handler
 
 
 _state = _State()
 
 
 class _Listening(ContextDecorator):
-    """See :func:`listening`."""
+    """Context manager and decorator returned by :func:`listening`."""
 
-    own = False
+    own = False  # whether this instance has installed the handler, and must remove it
 
-    def _recreate_cm(self) -> _Listening:  # each call of a decorated function listens by itself
+    def _recreate_cm(self) -> _Listening:  # a fresh instance for each call of a decorated function
         return _Listening()
 
     def __enter__(self) -> None:
@@ -55,7 +57,7 @@ class _Listening(ContextDecorator):
         _state.listening = True
         try:
             _plain.signal(signal.SIGINT, _interrupted)
-        except BaseException:  # an interrupt that came before: nothing begins
+        except BaseException:  # an interrupt arrived before the handler was installed
             _state.listening = False
             raise
         self.own = True
@@ -79,34 +81,37 @@ class _Listening(ContextDecorator):
 
 
 def listening() -> _Listening:
-    """Raise interrupts in good order inside, as a context or a decorator; a handler of the user's own is left alone."""
+    """Install the signal handler that respects sections, as a context manager or a decorator.
+
+    It does nothing in other threads than the main one, or if the user has a SIGINT handler.
+    """
     return _Listening()
 
 
 def _unheard() -> bool:
-    """Whether an interrupt would be raised by Python itself, at once."""
+    """Whether Python's default SIGINT handler is active and this is the main thread."""
     return get_ident() == MAIN and _plain.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def wanted() -> bool:
-    """Whether an interrupt has come that is raised at the end of the section."""
+    """Whether an interrupt is pending: the end of the section will raise it."""
     return _state.wanted and get_ident() == MAIN
 
 
 def take() -> None:
-    """The interrupt has been noticed: it is not raised once more."""
+    """Clear a pending interrupt, so that it is not raised again."""
     _state.wanted = False
 
 
 class Section:
-    """Work at whose end an interrupt is raised that was kept back, or ignored, inside; its result is then not used.
+    """Context manager that raises a delayed or ignored interrupt at its end, so that the result of the code inside is not used.
 
-    One that is held does so outside of `listening`, too.
+    A held section works outside of `listening`, too.
 
     Parameters
     ----------
     held : bool
-        Keep interrupts back.
+        Delay interrupts to the end of the section.
     """
 
     __slots__ = ("held",)
@@ -143,7 +148,7 @@ class Section:
 HELD, OPEN = Section(True), Section(False)
 
 
-# where sections begin and end nothing is cut in two either: what comes there is raised when it is done
+# code objects of the beginnings and ends of sections: an interrupt that arrives in them is delayed, too
 ENDS = {f.__code__ for c in (Section, _Listening) for f in (c.__enter__, c.__exit__)}
 
 
@@ -154,18 +159,22 @@ def _interrupted(number: int, frame: FrameType | None) -> None:
 
 
 Tell = Callable[[Any], None]
-FIRST, AGAIN = 20.0, 60.0  # seconds until a log gets its first line, and between two of them
+FIRST, AGAIN = 20.0, 60.0  # seconds before the first line of progress in a log, and between further lines
 
 
 @contextmanager
 def shown(asked: Tell | bool | None = None) -> Iterator[Tell | None]:
-    """What long work tells its progress to; None where nobody listens.
+    """Yield the callable that displays the progress of a long computation; None for no display.
 
     Parameters
     ----------
     asked : callable, bool or None
-        A callable is called with everything. None: a line on a terminal or in a notebook, else silence; also if the environment variable
-        ``CONTVINES_PROGRESS`` is ``off``. True: the same, and a line a minute in a log or a pipe. False: silence.
+        - a callable: it is called with each state of progress;
+        - None: a line on a terminal or in a notebook, otherwise nothing;
+        - True: likewise, and a line per minute in a log or a pipe;
+        - False: nothing.
+
+        The environment variable ``CONTVINES_PROGRESS=off`` turns the display off, except that of a callable.
     """
     if callable(asked):
         yield asked
@@ -182,12 +191,12 @@ def shown(asked: Tell | bool | None = None) -> Iterator[Tell | None]:
 
 
 def as_text(state: object) -> str:
-    """Where a run, a chart or a survey is, in one line: its ``sentence``, where it has one."""
+    """Describe a state of progress in one line: its ``sentence`` if it has one, otherwise ``str``."""
     return getattr(state, "sentence", "") or str(state)
 
 
 def time_left(seconds: float) -> str:
-    """An estimate of a time as people say it, after a comma; nothing if there is none."""
+    """Return a text such as ``, about 5 min left``; empty if the time is not positive (or nan)."""
     if not seconds > 0.0:
         return ""
     return f", about {f'{seconds:.0f} s' if seconds < 100.0 else f'{seconds / 60.0:.0f} min'} left"
@@ -205,7 +214,7 @@ def _terminal() -> Iterator[Tell]:
 
 
 def _in_notebook() -> bool:
-    """Whether this is a notebook's kernel; nothing is imported to find out."""
+    """Whether this process is a notebook's kernel; IPython is not imported for the test."""
     module = sys.modules.get("IPython")
     shell = module.get_ipython() if module is not None else None
     return type(shell).__name__ == "ZMQInteractiveShell"
@@ -224,7 +233,7 @@ def _notebook(say: Callable[[Any], str] = as_text) -> Iterator[Tell]:
 
 
 class _Log:
-    """A line on stderr from time to time."""
+    """Progress in a log: a line on stderr after `FIRST` seconds, then every `AGAIN` seconds."""
 
     def __init__(self, say: Callable[[Any], str] = as_text) -> None:
         self.due, self.say = monotonic() + FIRST, say
@@ -237,9 +246,20 @@ class _Log:
 
 @contextmanager
 def counted(total: int, what: str, asked: Tell | bool | None = None, done: int = 0) -> Iterator[Tell | None]:
-    """Progress of so many pieces of work, told after each; `asked` as for :func:`shown`, `done` that an earlier run has done.
+    """Yield a callable to be called after each piece of work, which displays the count; None for no display.
 
-    No thread draws by itself here: beside one, worker processes could not be copies of this process.
+    No display thread is started: a process with threads cannot be forked into worker processes.
+
+    Parameters
+    ----------
+    total : int
+        Number of pieces.
+    what : str
+        Name of the pieces, in the plural.
+    asked : callable, bool or None
+        As for :func:`shown`.
+    done : int
+        Pieces that an earlier run has finished.
     """
     if callable(asked) or asked is False or os.environ.get("CONTVINES_PROGRESS") == "off":
         yield asked if callable(asked) else None
@@ -272,7 +292,7 @@ def counted(total: int, what: str, asked: Tell | bool | None = None, done: int =
 
 OnInterrupt = Literal["raise", "return"]
 Asked = Tell | bool | None
-"""``progress`` of the long functions: a callable, False for none, None for a line on a terminal or in a notebook."""
+"""Type of the argument ``progress`` of long computations, see :func:`shown`."""
 
 
 Result = TypeVar("Result", bound=Resumable)
@@ -284,24 +304,25 @@ def carried_out(
     progress: Asked,
     interrupt: OnInterrupt,
 ) -> Result:
-    """The result of long work.
+    """Run a long computation that can be interrupted and resumed, and return its result.
 
     Parameters
     ----------
     begin : callable
-        From a journal and what is told of progress: the result, still empty, and the work that fills it in place.
+        ``begin(journal, tell)`` returns the result, still empty, and a function without arguments that fills it in place.
     journal : Journal or None
-        None: what is done is remembered in memory until the work is finished.
+        None: a `MemoryJournal`.
     progress : callable, bool or None
+        As for :func:`shown`.
     interrupt : "raise" or "return"
-        What Ctrl-C does: raise `Interrupted`, or end with the unfinished result.
+        Effect of Ctrl-C: raise `Interrupted`, or return the partial result.
 
     Raises
     ------
     Interrupted
-        On Ctrl-C once the work has begun.
+        On Ctrl-C once the computation has begun.
     ValueError
-        If `interrupt` is neither word, or the journal is none.
+        If `interrupt` is neither of the two words, or `journal` lacks a method of a journal.
     """
     check_interrupt(interrupt)
     kept = MemoryJournal() if journal is None else checked(journal)
@@ -319,7 +340,13 @@ def carried_out(
 
 
 def check_interrupt(interrupt: str) -> None:
-    """Refuse what Ctrl-C cannot do."""
+    """Check an argument ``interrupt``.
+
+    Raises
+    ------
+    ValueError
+        If it is neither "raise" nor "return".
+    """
     if interrupt not in ("raise", "return"):
         raise ValueError(
             f'interrupt = {interrupt!r} must be "raise" (Ctrl-C raises contvines.Interrupted) or "return" (it ends with what is done)'

@@ -1,4 +1,4 @@
-"""Tables as text that fits a terminal, or everything; HTML for notebooks."""
+"""Tables as text, at the width of the terminal or in full, and as HTML for notebooks."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 GAP = "  "
-LEAST = 16  # characters for the last column, before its text goes on in further lines
+LEAST = 16  # smallest width of the last column in characters; longer text is wrapped
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text.
+    """A table of text cells.
 
     Attributes
     ----------
     head : tuple of str
+        Names of the columns.
     rows : list of tuple of str
     spare : tuple of str
-        Columns that may be left out where room is short, the first one first.
+        Names of columns that a narrow terminal may leave out, the most dispensable first.
     right : tuple of str
-        Columns whose cells stand at the right.
+        Names of right-aligned columns.
     """
 
     head: tuple[str, ...]
@@ -33,10 +34,10 @@ class Table:
     right: tuple[str, ...] = ()
 
     def lines(self, width: int | None = None) -> list[str]:
-        """The table in at most `width` characters; None: all of it.
+        """Return the lines of the table, of at most `width` characters; None for no limit.
 
-        Where room is short spare columns are left out, and the last column goes on in further lines; where it is shorter
-        still, each cell has a line of its own.
+        If the table is too wide, spare columns are left out and the last column is wrapped; if it is still too wide, each
+        cell gets a line of its own.
         """
         columns = list(range(len(self.head)))
         columns = [c for c in columns if self.head[c] or any(row[c] for row in self.rows)]
@@ -75,7 +76,7 @@ class Table:
         return lines
 
     def _stacked(self, width: int) -> list[str]:
-        """A line for each cell, the first one's alone."""
+        """Return the lines of a table with a line for each cell; the first cell of a row begins a block."""
         names = max(len(name) for name in self.head[1:])
         lines = []
         for row in self.rows:
@@ -100,18 +101,18 @@ class Table:
 
 
 def terminal_width() -> int | None:
-    """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
+    """Return the width of the terminal in characters; None if stdout is a file, a pipe or a notebook."""
     return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None
 
 
 def titled(title: str, table: Table, further: Sequence[str] = ()) -> str:
-    """A title, the table, and further lines below it, as wide as the terminal."""
+    """Return a title, a table, and further lines below it as one text, fitted to the terminal."""
     below = ["", *map(fitted, further)] if further else []
     return "\n".join([fitted(title), "", *table.lines(terminal_width()), *below])
 
 
 def fitted(text: str, width: int | None = None) -> str:
-    """A text whose longer lines go on below, set in, in at most `width` characters; None: as the terminal wants it, if one shows it."""
+    """Wrap the long lines of a text to `width` characters, continuation lines indented; None for the width of the terminal, if there is one."""
     width = width or terminal_width()
     if width is None:
         return text
@@ -123,7 +124,7 @@ def fitted(text: str, width: int | None = None) -> str:
 
 
 def _wrapped(text: str, width: int, first: str = "", later: str = "") -> list[str]:
-    """Lines broken between words alone; a word that is longer than a line stays whole."""
+    """Wrap text at spaces only; a word longer than a line stays whole."""
     wrapped = textwrap.wrap(
         text,
         width,

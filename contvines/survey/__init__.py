@@ -1,4 +1,4 @@
-"""Surveys: many systems of one family, a diagram of each, and what comes out of it."""
+"""Surveys: a diagram for each of many systems of one family, and outcomes (numbers) of each diagram."""
 
 from .plan import Plan, PlanError, planned
 from .results import Survey, load_survey

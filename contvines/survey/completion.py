@@ -1,4 +1,4 @@
-"""Complete a diagram: motions known in closed form, and those that simulation finds beside it, become branches of its graph."""
+"""Complete a diagram: add branches for motions known in closed form and for motions that simulation finds and the diagram lacks."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
 
-CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
+CLOSED = 41  # number of values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
-PASSES = 3  # over the gaps with one value in each, for a branch that is found parts a gap
+PASSES = 3  # passes over the gaps with one value in each; a branch found in a gap may split it into new gaps
 PATIENT = (
     512.0  # forcing periods (of a self-excited machine: events) over which the largest response is measured
 )
-PROMISING = (
-    0.7  # of the largest response of all branches: one without a branch is followed to where it is largest
-)
-HALVINGS = 5  # of the distance between values about the largest response that was simulated, ...
-NEARLY = 0.998  # ... to where it is nearly as large, ...
-FLAT = 0.002  # ... and no further from there than this part of the interval: between values further apart it may be larger
-ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
+# relative to the largest response of all branches: the maximum of a larger response without a branch is refined
+PROMISING = 0.7
+HALVINGS = 5  # of the distance between the values around the largest simulated response
+NEARLY = 0.998  # relative to the largest response: no refinement towards a neighbour with a larger response than this ...
+FLAT = 0.002  # ... unless the neighbour is further away than this part of the interval
+# kinds that are no attractors: a transient that has not ended; a start inside a wall
+ON_ITS_WAY = ("slow", "impossible")
 
 
 @dataclass(frozen=True)
 class Unbranched:
-    """An attractor that lies on no branch: chaotic, quasi-periodic, one that runs away, or one that was not traced.
+    """An attractor that lies on no branch: chaotic, quasi-periodic, unbounded, or periodic but not traced.
 
     Attributes
     ----------
     value : float
         Of the parameter.
     kind : str
-        See `contvines.graph.contents.Attractor`; "periodic" of one that was not traced.
+        See `contvines.graph.contents.Attractor`; "periodic" for a motion that was not traced.
     measures : dict
-        Numbers by name, from simulation; empty where there are none.
+        Measures by name, from simulation; may be empty.
     state : float array, optional
-        On it.
+        A state on the attractor.
     """
 
     value: float
@@ -59,17 +59,18 @@ class Unbranched:
 
 
 def complete(graph: Graph, population: Population, values: int) -> list[Unbranched]:
-    """Add to a graph the motions to which its first branch does not lead, each with all that leaves it.
+    """Add to a graph the motions to which its first branch does not lead, each with the branches that leave it.
 
-    1. The motions known in closed form, at many values.
-    2. The attractors that a brief look meets, with many starts at a few values.
-    3. What takes over where a stable stretch ends.
-    4. What a few starts settle on where nothing stable is known.
-    5. The same between these values, about the largest response of a motion without a branch, which is followed to there, unless branches have much
-       larger ones.
+    The sources of these motions, in order:
 
-    A motion of more than `Settings.longest` unknowns is not traced, for its window is narrow, and none is where `Settings.completion` is spent (the graph
-    is not complete then, and says so): these are among what is returned, as they are simulated.
+    1. closed forms, evaluated at many values;
+    2. a brief search: many starts at a few values;
+    3. simulations just beyond the ends of stable stretches;
+    4. a few starts at values in the gaps, where no stable motion is known;
+    5. further values around the largest response of a motion without a branch, unless branches have much larger responses.
+
+    Two kinds of motions are not traced but returned as they were simulated: those of more than `Settings.longest` unknowns (their
+    windows are narrow), and all further ones after `Settings.completion` is used up; the graph's message then says that it is incomplete.
 
     Parameters
     ----------
@@ -77,12 +78,12 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
         With its problems; extended in place.
     population : Population
     values : int
-        At least so many values are looked at where nothing stable is known; 0 for none.
+        Smallest number of values in the gaps, where no stable motion is known; 0: no simulations there.
 
     Returns
     -------
     list of Unbranched
-        Attractors that were met and have no branch.
+        Attractors that were found and have no branch.
     """
     kept, (low, high) = graph.settings, graph.within
     limits = Limits.of(None, kept.get("bounds"), next(iter(graph.branches.values())).attached)
@@ -106,7 +107,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     count, starts = population.brief
     for t in (np.arange(count) + 0.5) / count:
         keep(census(population, float(low + (high - low) * t), starts, 0, run.journal), 0)
-    # the branches of motions that are met from here on are short: what leaves them is met as well
+    # depth run.depth from here on: these branches are short, and simulation also finds the motions that leave them
     handover = Handover(run, population)
     for end in handover.left():
         keep(handover.follow(end), run.depth)
@@ -136,12 +137,12 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
 
 
 def _size(graph: Graph, before: Collection[str]) -> int:
-    """Unknowns of all points of the branches that were not there before."""
+    """Return the number of unknowns of all points of the branches whose labels are not in `before`."""
     return sum(b.points.size for label, b in graph.branches.items() if label not in before)
 
 
 def _add(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> None:
-    """Trace the motions that lie on no branch yet."""
+    """Trace those of some motions at `p` that lie on no branch yet."""
     for problem, u in motions:
         if run.register.find(problem, u, p, True) is None:
             try:
@@ -151,21 +152,24 @@ def _add(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> N
 
 
 def _observed(population: Population, met: Sequence[Counted]) -> list[Unbranched]:
-    """Those that lie on no branch and have settled, with what is measured of them."""
+    """Return the settled motions that lie on no branch, with their measures."""
     found = []
     for counted in met:
         about = counted.attractor
         if about.branch is None and about.kind not in ON_ITS_WAY:
             try:
                 measures = population.observed(counted.state, about.value)
-            except ValueError:  # it runs away
+            except ValueError:  # the motion is unbounded
                 measures = {}
             found.append(Unbranched(about.value, about.kind, measures, counted.state))
     return found
 
 
 def _followed_longer(population: Population, graph: Graph, left: Sequence[Unbranched]) -> list[Unbranched]:
-    """These motions; the one with the largest response, where no branch has a larger one, measured over many periods: chaotic motions seldom reach it."""
+    """Return the motions `left`; if one of them has the largest response of all, it is measured again over `PATIENT` periods.
+
+    Chaotic motions reach their largest response rarely.
+    """
     name = default_measure(graph)
     one = max(left, key=lambda other: other.measures.get(name, -np.inf), default=None)
     if one is None or one.state is None or not one.measures.get(name, -np.inf) > _of_branches(graph):
@@ -176,15 +180,18 @@ def _followed_longer(population: Population, graph: Graph, left: Sequence[Unbran
 
 
 def _of_branches(graph: Graph) -> float:
-    """The largest stable response of all branches."""
+    """Return the largest stable response of all branches; -inf if there is none."""
     return max((float(np.nanmax(s.response, initial=-np.inf)) for s in stretches(graph)), default=-np.inf)
 
 
 def _about_the_largest(
     graph: Graph, left: Sequence[Unbranched], looked: Collection[float]
 ) -> tuple[list[float], np.ndarray | None]:
-    """Values half-way from the largest response without a branch to its neighbours that are not as large or are far, and a state on its motion; no
-    values where branches have much larger ones, or these are near."""
+    """Return values at which the largest response without a branch is refined, and a state on its motion.
+
+    The values lie half-way to the neighbouring values whose responses are smaller or which are far away. No values if branches have
+    much larger responses, or if the neighbours are near.
+    """
     name, (low, high) = default_measure(graph), graph.within
     known: dict[float, float] = {}
     for one in left:
@@ -202,24 +209,26 @@ def _about_the_largest(
     return [0.5 * (top + other) for other in beside], state
 
 
-VALUES = 5  # in the gaps, at least
+VALUES = 5  # smallest number of values in the gaps
 Band = tuple[float, float, float, float]
 
 
 def simulated(graph: Graph, population: Population, starts: int = FEW) -> list[Band]:
-    """What starts settle on at some values of every gap between the stable stretches of a graph, at fewer where a motion is integrated.
+    """Return the responses on which starts settle at some values in the gaps between the stable stretches of a graph.
+
+    There are fewer values if motions have to be integrated numerically.
 
     Parameters
     ----------
     graph : Graph
     population : Population
     starts : int
-        At each value.
+        Number at each value.
 
     Returns
     -------
     list of (float, float, float, float)
-        The value, and the lowest, mean and highest response in a forcing period; all the same of a motion that recurs.
+        The value, and the lowest, mean and highest response per forcing period; all equal for a motion that recurs.
     """
     name, found = default_measure(graph), []
     for p in spread(gaps(graph), graph.within, VALUES, SIMULATED / np.cbrt(population.price)):

@@ -1,7 +1,7 @@
-"""What comes out of a diagram, as numbers.
+"""Outcomes: numbers computed from a diagram.
 
-An outcome is a function ``(found: Findings) -> {column: number}``. A *response* is the measure that a diagram shows, along the stable
-branches that are not virtual, and of motions that were simulated; several may coexist at one value.
+An outcome is a function ``(found: Findings) -> {column: number}``. A *response* is the default measure of a diagram, on stable real
+branches and of simulated motions; several responses may coexist at one value of the parameter.
 """
 
 from __future__ import annotations
@@ -24,24 +24,25 @@ if TYPE_CHECKING:
 
 Simulated = tuple[float, Mapping[str, float], str]
 """A motion on which a simulation settles: value of the parameter, measures by name, word."""
-GRID = 401  # values at which coexisting responses are compared
-KNOWN = 1.0 - COVERAGE.least  # share of the interval from which on the responses are known
+GRID = 401  # number of parameter values at which coexisting responses are compared
+# share of the interval with known responses from which on a system counts as known
+KNOWN = 1.0 - COVERAGE.least
 
 
 @dataclass(frozen=True)
 class Findings:
-    """What is known of one system.
+    """The computed results of one system, from which outcomes are computed.
 
     Attributes
     ----------
     graph : Graph
         Its diagram.
     seed : object
-        The solution that the diagram began with (of a machine: an orbit, its machine in `model`).
+        Seed of the diagram (for a machine: an orbit, with the machine as its `model`).
     simulated : sequence of (float, dict, str)
-        Motions that a simulation settled on: value of the parameter, measures by name, word; see `Job`.
+        Motions on which a simulation settled: value of the parameter, measures by name, word; see `Job`.
     unbranched : sequence of Unbranched
-        Attractors that lie on no branch of the diagram, chaotic ones for example.
+        Attractors that lie on no branch of the diagram, for example chaotic ones.
     """
 
     graph: Graph
@@ -54,13 +55,13 @@ Outcome = Callable[[Findings], Mapping[str, float]]
 
 
 def _highest(graph: Graph, measure: str | None = None) -> list[tuple[float, float]]:
-    """The largest stable response and where it is, if there is one."""
+    """Return (largest stable response of the branches, its parameter value) in a list; an empty list if there is none."""
     top = highest(stretches(graph, measure))
     return [] if top is None else [(top.response, top.value)]
 
 
 def peak(found: Findings) -> dict[str, float]:
-    """The largest response, over all that coexist, and where it is."""
+    """Return the largest response over all coexisting motions, and its parameter value."""
     name = default_measure(found.graph)
     known = _highest(found.graph)
     known += [(float(measures.get(name, np.nan)), value) for value, measures, _ in found.simulated]
@@ -70,7 +71,7 @@ def peak(found: Findings) -> dict[str, float]:
 
 
 def largest(found: Findings, measure: str) -> dict[str, float]:
-    """The largest value of any measure, over all stable motions that coexist, and where it is; no number where one was simulated that lacks it."""
+    """Return the largest value of a measure over all coexisting stable motions, and its parameter value; nan if a simulated motion lacks the measure."""
     known = _highest(found.graph, measure)
     others = [(measures.get(measure, np.nan), value) for value, measures in _alone(found)]
     if any(np.isnan(value) for value, _ in others):
@@ -80,7 +81,10 @@ def largest(found: Findings, measure: str) -> dict[str, float]:
 
 
 def lower_peak(found: Findings) -> dict[str, float]:
-    """The same where at each value the lowest of the coexisting responses is met; those simulated count where there is no branch."""
+    """Return the largest response if at each value the lowest coexisting response occurs, and its parameter value.
+
+    Simulated responses count only where no branch is stable.
+    """
     name = default_measure(found.graph)
     grid, table = _compared(found.graph)
     known = np.any(np.isfinite(table), axis=0)
@@ -96,7 +100,7 @@ def lower_peak(found: Findings) -> dict[str, float]:
 
 
 def _alone(found: Findings, simulated: bool = True) -> list[tuple[float, Mapping[str, float]]]:
-    """Motions without a branch at values where the diagram has no stable response; with those on which simulations settled, if asked."""
+    """Return (value, measures) of motions without a branch in the gaps of the diagram; with `simulated`, of simulated motions, too."""
     seen = [(met.value, met.measures) for met in found.unbranched]
     if simulated:
         seen += [(value, measures) for value, measures, _ in found.simulated]
@@ -105,7 +109,7 @@ def _alone(found: Findings, simulated: bool = True) -> list[tuple[float, Mapping
 
 
 def covered(found: Findings) -> dict[str, float]:
-    """Share of the interval in which a stable response is known, of a branch or by simulation; no number where stability is not computed."""
+    """Return the share of the interval in which a stable response is known, from a branch or by simulation; nan if stability is not computed."""
     if not _judged(found.graph):
         return {"covered": np.nan}
     low, high = found.graph.within
@@ -113,16 +117,16 @@ def covered(found: Findings) -> dict[str, float]:
 
 
 def _unknown_parts(found: Findings) -> list[tuple[float, float]]:
-    """Intervals in which no stable response is known, of a branch or by simulation."""
+    """Return the intervals in which no stable response is known, neither from a branch nor by simulation."""
     name = default_measure(found.graph)
     seen = [value for value, measures in _alone(found) if np.isfinite(measures.get(name, np.nan))]
     return unseen(gaps(found.graph), found.graph.within, seen)
 
 
 def unknown(found: Findings) -> str:
-    """A sentence on what is not known of the responses of a system; empty if its stable motions cover the interval and nothing else was met.
+    """Describe the gaps in the known responses of a system.
 
-    It is empty, too, where stability is not computed.
+    The text is empty if stable motions cover the interval and simulation found no motion without a branch, and if stability is not computed.
     """
     graph = found.graph
     if not _judged(graph):
@@ -157,9 +161,14 @@ def _judged(graph: Graph) -> bool:
 
 
 def modulated(found: Findings) -> dict[str, float]:
-    """Where no motion with a period is stable, and simulations do not recur: the share of the interval, and the response that is largest in the
-    mean: lowest, mean and highest of its largest displacements in a forcing period; the share of such motions whose impacts stop and begin
-    again (strong modulation)."""
+    """Return the outcomes of modulated responses: simulated motions that do not recur, where no periodic motion is stable.
+
+    Returns
+    -------
+    dict
+        ``modulated``: share of the interval; lowest, mean and highest of the largest displacement per forcing period, for the motion with
+        the largest mean; ``modulated_strong``: share of these motions whose impacts stop and begin again (strong modulation).
+    """
     low, high = found.graph.within
     met = [one.measures for one in found.unbranched if np.isfinite(one.measures.get(BAND[1], np.nan))]
     if not met:
@@ -175,11 +184,11 @@ def modulated(found: Findings) -> dict[str, float]:
 
 
 def activation(found: Findings) -> dict[str, float]:
-    """Where impacts begin.
+    """Return the parameter values at which impacts begin.
 
-    From below: the value up to which a motion without impacts is stable. From above: the least value at which one with impacts is. Both
-    are special points of the diagram; no number where the interval ends first, where the diagram has no motion without impacts (it
-    may then lack the branch that begins where they do), or where a simulation contradicts it.
+    ``activation_from_below``: the largest value with a stable motion without impacts. ``activation_from_above``: the smallest value with
+    a stable motion with impacts. Both are special points of the diagram. They are nan if the interval ends first, if a simulation
+    contradicts them, and (from above) if the diagram has no motion without impacts: the branch that begins with impacts may then be missing.
     """
     low, high = found.graph.within
     known = stretches(found.graph)
@@ -188,7 +197,7 @@ def activation(found: Findings) -> dict[str, float]:
     above = max((float(s.values.max()) for s in calm), default=np.nan)
     below = min((float(s.values.min()) for s in busy), default=np.nan)
     simulated = [(value, measures) for value, measures, _ in found.simulated]
-    # elsewhere a motion without a branch is beside the stable ones that the numbers are about
+    # outside of gaps, a motion without a branch coexists with stable branches and contradicts nothing
     simulated += _alone(found, simulated=False)
     told = [(value, m["impacts_per_period"]) for value, m in simulated if "impacts_per_period" in m]
     beyond = any(not impacts and value > above for value, impacts in told)
@@ -200,7 +209,7 @@ def activation(found: Findings) -> dict[str, float]:
 
 
 def stable_range(found: Findings, word: str) -> dict[str, float]:
-    """Where the motion with this word is stable: the length that is, from, and to."""
+    """Return the total length of the intervals in which a motion with this word is stable and real, their lower and their upper end."""
     parts = [
         interval
         for branch in found.graph.branches.values()
@@ -213,13 +222,13 @@ def stable_range(found: Findings, word: str) -> dict[str, float]:
 
 
 def first_point(found: Findings, kind: str) -> dict[str, float]:
-    """The least value with a special point of this kind on a branch that is no virtual one."""
+    """Return the smallest parameter value of the real special points of a kind; nan if there is none."""
     values = [float(point.value) for point in found.graph.of_kind(kind) if point.real]
     return {f"first_{kind}": min(values, default=np.nan)}
 
 
 def _compared(graph: Graph) -> tuple[np.ndarray, np.ndarray]:
-    """Values, shape (n,), and the responses of all stretches there, shape (m, n); no number beyond a stretch's ends."""
+    """Return a grid of values, shape (n,), and the responses of all stable stretches there, shape (m, n); nan outside of a stretch."""
     grid = np.linspace(graph.within[0], graph.within[1], GRID)
     rows = []
     for stretch in stretches(graph):
@@ -231,7 +240,7 @@ def _compared(graph: Graph) -> tuple[np.ndarray, np.ndarray]:
 
 
 def coexisting(found: Findings) -> dict[str, float]:
-    """The largest number of stable responses at one value, and the share of the interval in which there is more than one."""
+    """Return the largest number of stable responses at one value, and the share of the interval with more than one."""
     count = np.isfinite(_compared(found.graph)[1]).sum(axis=0)
     return {
         "coexisting": float(count.max(initial=0)),
@@ -240,9 +249,9 @@ def coexisting(found: Findings) -> dict[str, float]:
 
 
 def share(found: Findings, word: str) -> dict[str, float]:
-    """Share of the simulated starts that settle on the motion with this word.
+    """Return the share of the simulated starts that settle on the motion with this word.
 
-    Of an atlas: the mean over the values with the most starts, and the least of them. Else of all motions that were simulated.
+    For an atlas: the mean and the smallest of the shares at the values with the most starts. Otherwise: the share among all simulated motions.
     """
     met = found.graph.attractors
     if met:
@@ -273,11 +282,11 @@ MADE: dict[str, Callable[..., Mapping[str, float]]] = {
     "share": share,
     "largest": largest,
 }
-"""Outcomes of a word, kind or measure, written ``stable:LR``, ``first:period-doubling``, ``largest:impulse``."""
+"""Outcomes with an argument (word, kind or measure), written ``stable:LR``, ``first:period-doubling``, ``largest:impulse``."""
 ARGUMENTS = {"stable": "word", "first": "kind", "share": "word", "largest": "measure"}
-"""What follows the colon, as the functions call it."""
+"""Name of the argument after the colon, by outcome."""
 OF_ALL = frozenset(
     ("peak", "peak_at", "lower_peak", "lower_peak_at", "coexisting", "ambiguous", "impact_power", "friction_power", "pumping_time",
      "pumped_share")
 )  # fmt: skip
-"""Columns about all motions together, those of machines included: where some motions are not known, the number is not known either."""
+"""Columns, also those of machines, about all motions together: they are only bounds if some motions are not known."""

@@ -1,4 +1,4 @@
-"""Which systems a survey looks at: grids and lists, and samples of what is not known exactly."""
+"""Plans of surveys: grids and lists of parameter values, and samples of uncertain parameters."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ KEYS = ("within", "count", "values", "normal", "uniform")
 
 
 class PlanError(ValueError):
-    """A survey that cannot be planned; the sentence names the field, the value and a way out."""
+    """An invalid survey; the message names the field and its value, and suggests a remedy."""
 
 
 class Law(Protocol):
-    """A distribution of a number."""
+    """A probability distribution; ``ppf`` is the inverse of the cumulative distribution function, as in scipy.stats."""
 
     def ppf(self, q: np.ndarray) -> np.ndarray: ...
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The systems of a survey: every combination of the axes, each with every sample.
+    """The systems of a survey: every combination of the values on the axes, each with every sample.
 
     Attributes
     ----------
     axes : dict
         Values of each parameter on a grid, in order.
     samples : dict
-        Sampled values of each uncertain parameter, all of one length; empty where nothing is uncertain.
+        Sampled values of each uncertain parameter, all of the same length; empty if no parameter is uncertain.
     """
 
     axes: dict[str, np.ndarray]
@@ -44,7 +44,7 @@ class Plan:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters that vary."""
+        """Names of the parameters that vary."""
         return (*self.axes, *self.samples)
 
     @property
@@ -62,7 +62,7 @@ class Plan:
         return int(np.prod(self.shape))
 
     def systems(self) -> list[dict[str, float]]:
-        """Values of the parameters of each system, the last dimension running fastest."""
+        """Return the parameter values of each system, the last dimension varying fastest."""
         found = []
         count = self.shape[-1] if self.samples else 1
         for point in itertools.product(*self.axes.values()):
@@ -72,7 +72,7 @@ class Plan:
         return found
 
     def neighbours(self) -> list[int | None]:
-        """For each system an earlier one that differs from it least in place: one step back along the last axis that moved."""
+        """Return for each system the index of an adjacent earlier one (one step back along the last axis that has moved); None for the first."""
         shape = self.shape
         found: list[int | None] = []
         for index in range(len(self)):
@@ -87,23 +87,27 @@ class Plan:
 
 
 def planned(vary: Mapping[str, object], sampling: str = "latin", samples: int = 32, seed: int = 1) -> Plan:
-    """A plan from what a user says of each parameter.
+    """Return the plan for a user's specification of each parameter.
 
     Parameters
     ----------
     vary : mapping
-        Name -> a list of values; ``{"within": [low, high], "count": n}``, a grid; ``{"within": [low, high]}`` or
-        ``{"uniform": [low, high]}``, anywhere between; ``{"normal": [mean, deviation]}``, with ``within`` cut off there.
+        Name -> specification:
+
+        - a list of values;
+        - ``{"within": [low, high], "count": n}``: a grid;
+        - ``{"within": [low, high]}`` or ``{"uniform": [low, high]}``: uncertain, uniformly distributed;
+        - ``{"normal": [mean, deviation]}``: uncertain, normally distributed; truncated to ``within`` if this is given, too.
     sampling : {"latin", "sobol", "random"}
-        How uncertain parameters are drawn, together.
+        Method by which all uncertain parameters are sampled together.
     samples : int
-        How many are drawn.
+        Number of samples.
     seed : int
 
     Raises
     ------
     PlanError
-        With a sentence about the first thing that cannot be.
+        If a specification is invalid; the message names the first error.
     """
     if not vary:
         raise PlanError(
@@ -131,7 +135,7 @@ def planned(vary: Mapping[str, object], sampling: str = "latin", samples: int = 
 
 
 def _axis(name: str, said: object) -> np.ndarray | None:
-    """Values on an axis; None for an uncertain parameter."""
+    """Return the values of a parameter on an axis; None for an uncertain parameter."""
     place = f"[survey] vary.{name}"
     if isinstance(said, Mapping):
         unknown = [key for key in said if key not in KEYS]

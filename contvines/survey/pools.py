@@ -1,7 +1,7 @@
-"""Where the systems of a survey are worked on: in this process, in several of this machine, or on a dask cluster.
+"""Run the systems of a survey in this process, in several processes, or on a dask cluster.
 
-All three run the same function on the same arguments, so the rows are the same bit for bit, in whatever order they come. A worker that is
-killed loses what it was working on, which another one does again.
+All three call the same function with the same arguments, so the rows are identical bit for bit; their order may differ. If a worker is
+killed, another one repeats its system.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ Task = tuple[int, dict[str, float], object]
 def worked(
     job: Job, tasks: Sequence[Task], workers: int | None, client: str | Client | None
 ) -> Generator[Row, None, None]:
-    """The rows of some systems, in any order.
+    """Yield the rows of some systems, in any order.
 
     Parameters
     ----------
     job : Job
     tasks : sequence of (int, dict, object)
-        Number of a system, its values, and what it may begin with.
+        Index of each system, its parameter values, and the neighbours' start (see `Carrying`) or None.
     workers : int or None
-        Processes of this machine; all cores by default, 1 for none beside this one.
+        Number of processes on this computer; None: one per core. 1: this process only.
     client : str or distributed.Client, optional
         A dask cluster instead, or its address.
     """
@@ -58,12 +58,12 @@ def worked(
 
 
 def lost(index: int) -> Row:
-    """The row of a system whose worker was lost again and again."""
+    """Return the row of a system whose worker process died at every attempt."""
     return Row(index, {}, LOST.format(ATTEMPTS))
 
 
 def cluster(job: Job, tasks: Sequence[Task], client: str | Client) -> Generator[Row, None, None]:
-    """On a dask cluster; `client` is its address or a `distributed.Client`."""
+    """Yield the rows of some systems, computed on a dask cluster; `client` is its address or a `distributed.Client`."""
     from distributed import Client, as_completed
     from distributed.scheduler import KilledWorker
 
@@ -93,7 +93,7 @@ def cluster(job: Job, tasks: Sequence[Task], client: str | Client) -> Generator[
 
 
 def found_here_alone(*functions: object) -> bool:
-    """Whether other processes do not find one of these: it was written in a notebook or at the prompt, and no process is a copy."""
+    """Whether worker processes cannot import one of these functions: it is defined in a notebook or at the prompt, and processes cannot be forked."""
     main = sys.modules["__main__"]
     return (
         not hasattr(main, "__file__")
@@ -103,7 +103,7 @@ def found_here_alone(*functions: object) -> bool:
 
 
 def cores() -> int:
-    """Number of cores that this process may use."""
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""What a survey found: numbers over a grid and its samples, as arrays, NetCDF and CSV."""
+"""Results of a survey: outcomes over a grid and its samples, as arrays, NetCDF and CSV."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ class Survey(Resumable):
     ----------
     plan : Plan
     columns : dict
-        Each outcome as an array of the plan's shape, ``covered`` always among them; no number where a system failed or has none.
+        Outcome by name, each an array of the plan's shape; ``covered`` is always among them. nan where a system failed or lacks the outcome.
     notes : ndarray of str
-        Why a system failed, or what is not known of it; empty where the stable motions of its diagram cover the whole interval.
+        For each system the reason of its failure, or the gaps in its results; empty if its stable motions cover the whole interval.
     units : dict
-        Of parameters and outcomes, where they have some.
+        Units of parameters and outcomes by name.
     about : dict
-        What was surveyed, JSON-able.
+        Description of the survey, JSON-able.
     notation : dict
-        Labels of axes by name of parameter or outcome; names without one are shown as they are.
+        Axis labels by name of parameter or outcome; other names are shown as they are.
     """
 
     plan: Plan
@@ -67,7 +67,7 @@ class Survey(Resumable):
         about: dict[str, Any],
         notation: dict[str, str] | None = None,
     ) -> Survey:
-        """From rows in any order."""
+        """Make a survey from the rows of its systems, in any order; arguments as the attributes."""
         ordered = sorted(rows, key=lambda row: row.index)
         names = dict.fromkeys(name for row in ordered for name in row.columns)
         columns = {}
@@ -92,7 +92,7 @@ class Survey(Resumable):
 
     @property
     def lost(self) -> np.ndarray:
-        """Which systems failed, bool array of the plan's shape."""
+        """Whether each system has no outcome at all (it failed, or was not computed); bool array of the plan's shape."""
         numbers = [np.isfinite(values) for values in self.columns.values()]
         return (self.notes != "") & ~np.any(np.array(numbers).reshape(-1, *self.plan.shape), axis=0)
 
@@ -103,23 +103,30 @@ class Survey(Resumable):
 
     @property
     def waiting(self) -> int:
-        """Number of systems that an interrupted survey has not come to."""
+        """Number of systems that an interrupted survey has not computed yet."""
         return int(np.count_nonzero(self.notes == NOT_YET))
 
     @property
     def partly(self) -> int:
-        """Number of systems of which something is not known: their notes say what."""
+        """Number of systems with gaps in their results, which their notes describe."""
         return int(np.count_nonzero(self.notes != "")) - self.failed - self.waiting
 
     def known(self, outcome: str, covered: float = KNOWN) -> np.ndarray:
-        """An outcome where it is known: one of all motions together has no number where these do not cover the interval.
+        """Return an outcome, with nan where it is only a bound.
+
+        Outcomes about all motions together (`contvines.survey.outcomes.OF_ALL`), such as the peak, are bounds if the known stable
+        responses do not cover the interval.
 
         Parameters
         ----------
         outcome : str
-            ``peak`` for example; of a system that is not known in the whole interval it is a bound.
+            Name of the outcome.
         covered : float
-            Least share of the interval at which a system counts as known.
+            Smallest share of the interval that the known responses must cover.
+
+        Returns
+        -------
+        float array of the plan's shape
         """
         values = self[outcome]
         if outcome not in OF_ALL or "covered" not in self.columns:
@@ -127,7 +134,7 @@ class Survey(Resumable):
         return np.where(self["covered"] >= covered, values, np.nan)
 
     def to_xarray(self):
-        """An `xarray.Dataset`: a variable per outcome over the plan's dimensions, with units and the systems' notes."""
+        """Return an `xarray.Dataset` with a variable per outcome over the plan's dimensions, units, and the systems' notes."""
         xarray = needed("xarray", "tables")
 
         dims = self.plan.dimensions
@@ -158,13 +165,13 @@ class Survey(Resumable):
         return xarray.Dataset(variables, coords, {"about": json.dumps(self.about, sort_keys=True)})
 
     def save(self, path: str | Path) -> None:
-        """Write NetCDF with a digest, and the same as CSV beside it; a file of that name is replaced in one step."""
+        """Write a NetCDF file with a digest, and a CSV file with the same numbers beside it; an existing NetCDF file is replaced atomically."""
         path = Path(path)
         write(self.to_xarray(), path)
         self.to_csv(path.with_suffix(".csv"))
 
     def to_csv(self, path: str | Path) -> None:
-        """One row per system: its parameters, its outcomes, its note."""
+        """Write a CSV file with one row per system: its parameters, its outcomes, its note."""
         names = (*self.plan.names, *self.columns)
         rows, flat = [], [values.ravel() for values in self.columns.values()]
         for i, values in enumerate(self.plan.systems()):
@@ -174,14 +181,14 @@ class Survey(Resumable):
         write_csv(path, [*(with_unit(name, self.units.get(name)) for name in names), "note"], rows)
 
     def plot(self, outcome: str | None = None, **options: Unpack[PanelOptions]) -> Figure:
-        """A curve over one axis, with bands where there are samples, or a map over two.
+        """Plot an outcome: a curve over one axis, with bands for samples, or a map over two axes.
 
         Parameters
         ----------
         outcome : str, optional
             A column of the survey; by default the first one.
         **options
-            `axes`, `figsize` and `style`, as of every picture.
+            `axes`, `figsize` and `style`, as for all plots.
 
         Returns
         -------
@@ -194,32 +201,33 @@ class Survey(Resumable):
     def best(
         self, outcome: str, largest: bool = False, quantile: float | None = None, covered: float = KNOWN
     ) -> tuple[dict[str, float], float]:
-        """The point of the axes with the lowest (or largest) outcome, over the samples the worst, or this quantile of them.
+        """Return the point of the axes with the lowest (or largest) outcome.
 
-        A point at which a system failed, has no number, or is not known (see `known`) is never the best.
+        At each point the worst sample counts, or a quantile of the samples. A point at which a system failed, or its outcome is not
+        known (see `known`), is never the best.
 
         Parameters
         ----------
         outcome : str
             A column of the survey.
         largest : bool
-            Look for the largest value.
+            Return the largest value instead of the lowest.
         quantile : float, optional
-            Of the samples, 0 to 1; by default the worst one counts.
+            Quantile of the samples, 0 to 1; by default the worst one counts.
         covered : float
-            Share of the interval in which a response must be known.
+            Smallest share of the interval that the known responses must cover.
 
         Returns
         -------
         point : dict
-            Values of what varies on axes.
+            Values of the parameters on the axes.
         value : float
             The outcome there.
 
         Raises
         ------
         PlanError
-            If no point has a number.
+            If the outcome is known at no point.
         """
         value = self.judged(outcome, largest, quantile, covered)
         if not np.isfinite(value).any():
@@ -230,7 +238,7 @@ class Survey(Resumable):
         return point, float(value[place])
 
     def judged(self, outcome: str, largest: bool, quantile: float | None, covered: float) -> np.ndarray:
-        """An outcome over the axes alone, of the samples the worst or this quantile; options as of `best`."""
+        """Return an outcome over the axes alone, reduced over the samples to the worst one or a quantile; arguments as for `best`."""
         value = self.known(outcome, covered) * (sign := -1.0 if largest else 1.0)
         if self.plan.samples:
             with np.errstate(invalid="ignore"):
@@ -273,13 +281,13 @@ def load_survey(path: str | Path) -> Survey:
     Raises
     ------
     PlanError
-        If there is no such file, it is not that of a survey, or it is damaged.
+        If there is no such file, it is not the file of a survey, or it is damaged.
     """
     data = read(Path(path))
     damaged = PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged")
     try:
         about = json.loads(data.attrs["about"])
-        # in the order of the dimensions: that of the notes about the survey is the alphabet's
+        # in the order of the dimensions; the JSON text about the survey has them in alphabetic order
         axes = {str(name): data[name].values for name in data["note"].dims if name in about["axes"]}
         samples = {str(name): data[name].values for name in data.coords if name in about["samples"]}
         columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
@@ -297,14 +305,14 @@ def load_survey(path: str | Path) -> Survey:
     return Survey(plan, columns, notes, units, about, notation)
 
 
-FORMAT = "contvines survey 2"  # the first had no digest
+FORMAT = "contvines survey 2"  # format 1 had no digest
 BLANK = b"0" * 64
 MARK = b"sha256\0\0" + (2).to_bytes(4, "big") + len(BLANK).to_bytes(4, "big")
-"""How the attribute begins in the file: its name, that it is text, and how long (NetCDF classic format, section on attributes)."""
+"""Bytes before the digest in the file: name, type (text) and length of the attribute (NetCDF classic format, section on attributes)."""
 
 
 def write(data: Dataset, path: Path) -> None:
-    """Write a data set with its digest; a file of that name is replaced in one step.
+    """Write a data set with its digest as a NetCDF file; an existing file is replaced atomically.
 
     Parameters
     ----------
@@ -313,7 +321,8 @@ def write(data: Dataset, path: Path) -> None:
     """
     draft = path.with_name(path.name + ".new")
     marked = data.assign_attrs(format=FORMAT, sha256=BLANK.decode())
-    marked.to_netcdf(draft, engine="scipy", format="NETCDF3_64BIT")  # needs no library of its own
+    # the engine of scipy needs no netCDF library
+    marked.to_netcdf(draft, engine="scipy", format="NETCDF3_64BIT")
     content = draft.read_bytes()
     place = content.index(MARK) + len(MARK)
     digest = hashlib.sha256(content).hexdigest().encode()
@@ -322,7 +331,7 @@ def write(data: Dataset, path: Path) -> None:
 
 
 def read(path: Path) -> Dataset:
-    """The data set of a file, in memory.
+    """Read the data set of a survey's file into memory.
 
     Raises
     ------
@@ -346,13 +355,13 @@ def read(path: Path) -> Dataset:
             data.load()
     except (
         Exception
-    ):  # of another kind, or one without a digest that is damaged: whatever its reader stumbles over
+    ):  # a file of another kind, or a damaged one without digest: the reader may raise any error
         raise PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged") from None
     return data
 
 
 def _sound(content: bytes) -> bool:
-    """Whether the digest is that of the content; files of the first format have none."""
+    """Whether the digest in a file matches its content; true for files of format 1, which have none."""
     before, mark, after = content.partition(MARK)
     if not mark:
         return FORMAT.encode() not in content

@@ -1,4 +1,4 @@
-"""`survey`: the diagrams of many systems, and what comes out of them."""
+"""The function `survey`: compute diagrams of many systems and their outcomes."""
 
 from __future__ import annotations
 
@@ -27,16 +27,23 @@ from .work import NOT_YET, Carrying, Family, Job, Row
 if TYPE_CHECKING:
     from distributed import Client
 
-MEANING = 3  # of rows: those of another number were found in another way, and are not taken over
+MEANING = 3  # version of the meaning of rows; rows of a journal with another version are not reused
 
 
 def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outcome:
-    """The outcome that a name stands for.
+    """Return the outcome function with a name, such as ``peak`` or ``stable:LR``.
+
+    Parameters
+    ----------
+    said : str
+        The name.
+    more : mapping, optional
+        Further outcomes by name, besides `contvines.survey.outcomes.PLAIN`.
 
     Raises
     ------
     PlanError
-        If there is none.
+        If there is no such outcome.
     """
     known = {**PLAIN, **(more or {})}
     if said in known:
@@ -74,42 +81,44 @@ def survey(
     interrupt: OnInterrupt = "raise",
     **options: object,
 ) -> Survey:
-    """A diagram of each of many systems.
+    """Compute a diagram of each of many systems, and numbers (outcomes) from each diagram.
 
     Parameters
     ----------
     family : callable
-        ``family(values, near)``, what a diagram of the system with these values begins with; with members ``near(seed)``, what its
-        neighbours may begin with, and ``starts(values, neighbours)``, all of those in order (see `orbits.design.Family`).
+        ``family(values, near)`` returns the seed of the diagram of the system with these parameter values. Optional methods:
+        ``near(seed)`` returns a start for the system's neighbours, and ``starts(values, neighbours)`` the starts of all systems in
+        order (see `orbits.design.Family`).
     vary : Plan or mapping
-        Which systems; see `planned`.
+        The systems; see `planned`.
     over, within
         The parameter of the diagrams and its interval.
     outcomes : sequence of str or callable
-        Names (`contvines.survey.outcomes`), or functions ``(found: Findings) -> {column: number}``.
+        Names (see `contvines.survey.outcomes`), or functions ``(found: Findings) -> {column: number}``.
     gaps, values, starts : int
-        Where the systems are simulated besides; see `contvines.survey.work.Job`.
+        Numbers of additional simulations; see `contvines.survey.work.Job`.
     atlas : mapping, optional
-        ``values``, ``starts``, ``seed``, ``scan``, ``budget`` of `contvines.atlas`: an atlas of each system in place of a diagram.
+        Compute an atlas of each system instead of a diagram, with these arguments of `contvines.atlas`: ``values``, ``starts``,
+        ``seed``, ``scan``, ``budget``.
     swept : int
-        At so many values each system is simulated in place of a diagram; the outcomes are ``peak`` and ``lower_peak``.
+        Simulate each system at this number of values instead of computing a diagram; the outcomes are then ``peak`` and ``lower_peak``.
     workers : int, optional
-        Processes of this machine; all cores by default, 1 for none beside this one.
+        Number of processes on this computer; by default one per core. 1: this process only.
     cluster : str or distributed.Client, optional
         A dask cluster instead.
     journal : path, optional
-        Where rows are kept at once: the same survey goes on from them.
+        File in which each row is stored at once; the same survey resumes from it.
     units : mapping, optional
-        Of parameters and outcomes.
+        Units of parameters and outcomes.
     about : mapping, optional
-        What is surveyed, JSON-able; it is kept with the results and decides whether a journal's rows are of the same survey.
+        Description of the family, JSON-able. It is stored with the results; rows of a journal are reused only if it is equal.
     progress : callable or bool, optional
-        Called with each row. By default a count on a terminal or in a notebook; False for none.
+        Called with each row. By default a count is shown on a terminal or in a notebook; False: nothing.
     interrupt : "raise" or "return"
-        What Ctrl-C does: raise `contvines.Interrupted`, whose ``graph`` is the survey of the systems that are done, or return that survey.
-        ``contvines.resume(survey)`` goes on.
+        Effect of Ctrl-C: raise `contvines.Interrupted`, whose ``graph`` is the survey of the finished systems, or return that survey.
+        ``contvines.resume(survey)`` continues.
     **options
-        Of `contvines.diagram`, ``depth`` for example.
+        Further arguments of `contvines.diagram`, for example ``depth``.
 
     Returns
     -------
@@ -118,7 +127,7 @@ def survey(
     Raises
     ------
     PlanError
-        If it cannot be; a system that fails is a row with a sentence.
+        If the survey is invalid. A system that fails raises nothing: its row gives the reason in `note`.
     Interrupted
         On Ctrl-C.
     """
@@ -167,7 +176,7 @@ def survey(
 
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, object] | None) -> str:
-    """What decides a survey's rows: surveys that must give the same share it."""
+    """Return the digest of everything that determines a survey's rows; equal surveys have equal digests."""
     return files.digest_of({"rows": MEANING, **_description(plan, over, within, about)})
 
 

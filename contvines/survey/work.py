@@ -1,4 +1,4 @@
-"""One system of a survey: what is asked of its family, its start, its diagram, and what comes out of it. This is what worker processes run."""
+"""One system of a survey: protocols of its family, its seed, its diagram and its outcomes. Worker processes run `work`."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .outcomes import Findings, Outcome, Simulated, covered, unknown
 
 NOT_YET = "not done yet: the survey was interrupted"  # note of a row
 Family = Callable[[Mapping[str, float], Any], object]
-"""(values, near) -> the system with these values and a solution of it to begin with; `near` is what `Carrying.starts` had of it, or None."""
+"""(values, near) -> seed of the diagram of the system with these parameter values; `near` is its entry of `Carrying.starts`, or None."""
 
 
 @runtime_checkable
 class Carrying(Protocol):
-    """A family whose solutions begin with those of neighbours: one entry for each system, None where it begins by itself."""
+    """A family that finds the seed of a system from a solution of a neighbour; ``starts`` returns one start per system, None for a system without."""
 
     def starts(
         self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]
@@ -31,7 +31,7 @@ class Carrying(Protocol):
 
 @runtime_checkable
 class Simulating(Protocol):
-    """A family that simulates a system, from so many starts at each of some values of the parameter `over`."""
+    """A family that can simulate a system, from `starts` starts at each of the values `at` of the parameter `over`."""
 
     def simulated(
         self, values: Mapping[str, float], over: str, at: Sequence[float], starts: int
@@ -40,7 +40,7 @@ class Simulating(Protocol):
 
 @runtime_checkable
 class Sweeping(Protocol):
-    """A family that tells the responses of a system by simulation alone: values of the parameter `over`, and a measure there."""
+    """A family that computes the responses of a system by simulation alone; ``swept`` returns pairs of a value of the parameter `over` and the response there."""
 
     def swept(
         self, values: Mapping[str, float], over: str, at: Sequence[float]
@@ -49,27 +49,29 @@ class Sweeping(Protocol):
 
 @dataclass(frozen=True)
 class Job:
-    """What all systems of a survey share; it is sent to the workers.
+    """The settings that all systems of a survey share; sent to the worker processes.
 
     Attributes
     ----------
     family : callable
-        ``family(values, near) -> seed``: the system with these values and a solution of it to begin with, from that of a
-        neighbour (`near`, from ``family.near(seed)``) or, with None, by itself.
-    over, within : the continuation.
+        ``family(values, near) -> seed`` of the system with these parameter values, found from a neighbour's solution (`near`, from
+        ``family.near(seed)``) or, if `near` is None, independently.
+    over, within
+        The parameter of the diagrams and its interval.
     outcomes : tuple of callables
         ``outcome(found) -> {column: number}``; see `contvines.survey.outcomes`.
     gaps : int
-        At how many values, at least, the system is simulated where its diagram has no stable response, if the family can: there lie
-        modulated and chaotic motions, and those that are not connected to any branch.
+        Smallest number of values at which the system is simulated in the gaps of its diagram (where no response is stable), if the
+        family is `Simulating`. Modulated and chaotic motions lie there, and motions that are not connected to any branch.
     values, starts : int
-        At how many values of the interval it is simulated besides, and from how many starts each.
+        Number of further values, spread over the whole interval, at which the system is simulated, and number of starts at each.
     options : dict
-        Of `contvines.diagram`.
+        Arguments of `contvines.diagram`.
     atlas : mapping, optional
-        Of `contvines.atlas`: with it an atlas of each system is made, so that motions count that are not connected to others.
+        Arguments of `contvines.atlas`; an atlas replaces the diagram, so that motions without connection to others are found, too.
     swept : int
-        At so many values each system is simulated in place of a diagram, if the family can; the outcomes are then ``peak`` and ``lower_peak``.
+        If positive and the family is `Sweeping`: number of values at which the system is simulated instead of computing a diagram; the
+        outcomes are then ``peak`` and ``lower_peak``.
     """
 
     family: Family
@@ -86,15 +88,16 @@ class Job:
 
 @dataclass(frozen=True)
 class Row:
-    """What came out of one system.
+    """The outcomes of one system.
 
     Attributes
     ----------
     index : int
+        Of the system in the plan.
     columns : dict
-        Numbers by name, ``covered`` always among them; empty where the system failed.
+        Outcomes by name, ``covered`` always among them; empty if the system failed.
     note : str
-        Why it failed, or what is not known of it, as a sentence.
+        Reason of the failure, or the gaps in the results.
     """
 
     index: int
@@ -103,7 +106,18 @@ class Row:
 
 
 def work(job: Job, index: int, values: Mapping[str, float], near: object = None) -> Row:
-    """The outcomes of one system; a system that fails is a row with its sentence."""
+    """Compute the row of one system; a failed system's row gives the reason in `note`.
+
+    Parameters
+    ----------
+    job : Job
+    index : int
+        Of the system in the plan.
+    values : mapping
+        Its parameter values.
+    near : object
+        The start from its neighbour, or None.
+    """
     columns: dict[str, float] = {}
     try:
         with np.errstate(all="ignore"):
@@ -117,7 +131,7 @@ def work(job: Job, index: int, values: Mapping[str, float], near: object = None)
             except ValueError:  # equations that cannot be simulated from many starts
                 population = None
             left = [] if population is None else complete(graph, population, job.gaps)
-            open_ = gaps(graph) if population is None else []  # else they are looked at already
+            open_ = gaps(graph) if population is None else []  # otherwise `complete` has simulated in them
             found = Findings(graph, seed, _simulated(job, values, open_), left)
             for outcome in (*job.outcomes, covered):
                 columns |= {name: float(value) for name, value in outcome(found).items()}
@@ -129,7 +143,7 @@ def work(job: Job, index: int, values: Mapping[str, float], near: object = None)
 
 
 def _swept(job: Job, family: Sweeping, values: Mapping[str, float]) -> dict[str, float]:
-    """The largest response by simulation alone, and the largest if at each value the lowest is met that was seen there."""
+    """Return the outcomes by simulation alone: the largest response, and the largest over the values of the lowest response at each value."""
     grid = np.linspace(*job.within, job.swept).tolist()
     seen = [(p, x) for p, x in family.swept(values, job.over, grid) if np.isfinite(x)]
     lowest = {p: min(responses) for p in grid if (responses := [x for at, x in seen if at == p])}
@@ -143,7 +157,7 @@ def _swept(job: Job, family: Sweeping, values: Mapping[str, float]) -> dict[str,
 def _simulated(
     job: Job, values: Mapping[str, float], open_: Sequence[tuple[float, float]]
 ) -> list[Simulated]:
-    """Motions on which simulations settle: in the gaps `open_`, and where else it is asked for."""
+    """Return motions on which simulations settle, in the gaps `open_` and at the further values of the job."""
     if not isinstance(job.family, Simulating):
         return []
     found = []
