@@ -57,7 +57,7 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     """
     engine = segment.engine
     before, after = segment.counts
-    if engine.detection == "map" and not engine.adaptive and _unseen_between(segment, found):
+    if engine.detection == "map" and not engine.adaptive and _missed_between(segment, found):
         return True
     plus, minus, pairs = (b - a for a, b in zip(before, after))
     if engine.detection == "real" and plus and plus % 2 == 0:
@@ -84,10 +84,10 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     # two multipliers that have crossed +1 may meet as a pair and be past -1 at the end
     odd = all(change % 2 == number % 2 for change, number in zip((plus, minus), explained))
     all_counted = bool(found) and all(_others_outside(engine, event) is not None for event in found)
-    return not (engine.adaptive and odd and all_counted and not _unseen_between(segment, found))
+    return not (engine.adaptive and odd and all_counted and not _missed_between(segment, found))
 
 
-def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
+def _missed_between(segment: Segment, found: Sequence[Located]) -> bool:
     """Whether the number of multipliers outside the circle changes between the points found, so that a point is missing.
 
     From one end to the other, only the critical multipliers of each point found may cross the circle, at this point. Counts at the two ends are

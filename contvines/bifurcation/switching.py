@@ -268,12 +268,12 @@ class _BranchPoint:
     ) -> Departure | None:
         """Compute the branch in a direction, or None; `bend` is the parameter's curvature, as `Departure.curvature`."""
         ways = ((LEAST_RATIO, LEAVING.slanted), (LEAST_RATIO, LEAVING.grazing), (0.0, LEAVING.slanted))
-        for asked in (exchanged, None) if exchanged is not None else (None,):
+        for test in (exchanged, None) if exchanged is not None else (None,):
             for way in ways:
-                found = self._along(direction, bend, asked, *way)
+                found = self._along(direction, bend, test, *way)
                 straight = None if found is None else self._straight(found)
                 if straight is not None:
-                    found = self._along(straight, 0.0, asked, *way) or found
+                    found = self._along(straight, 0.0, test, *way) or found
                 if found is not None:
                     return found
         return None

@@ -317,7 +317,7 @@ class Meshes:
         self,
         start: Start,
         halves: Callable[[Detector, Start, Container[str]], dict[str, HalfBranch]],
-        again: Callable[[Detector, Detector, Start], Start | None],
+        restarted: Callable[[Detector, Detector, Start], Start | None],
         real: bool,
     ) -> tuple[dict[str, HalfBranch], Detector, Start]:
         """Follow both sides of a branch, and bring them to one mesh, the finest that is needed.
@@ -330,7 +330,7 @@ class Meshes:
             Start on the first mesh.
         halves : callable
             (detector, start, sides to leave out) -> half branches by side.
-        again : callable
+        restarted : callable
             (detector, detector of the finer mesh, start) -> start on the finer mesh; None if there is none.
         real : bool
             Whether the branch has positive margins.
@@ -351,7 +351,7 @@ class Meshes:
             wanted = max(meshes, key=self.detectors.index)
             level = {side: self._level(half, wanted, real) for side, half in found.items()}
             done = {side: half for side, half in level.items() if half is not None}
-            begin = None if len(done) == len(found) else again(detector, wanted, start)
+            begin = None if len(done) == len(found) else restarted(detector, wanted, start)
             if begin is None:
                 whole = {side: done.get(side) or self.read(half, wanted) for side, half in found.items()}
                 return whole, detector, start
@@ -401,7 +401,7 @@ class Meshes:
         coarse, detector = half.detector, self.finer(half.detector)
         found = self.read(half, detector)
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
-        same = ended and _goes_on(found, real) and _located_again(found, real)
+        same = ended and _end_unchanged(found, real) and _located_again(found, real)
         detector.parts = coarse.parts
 
         def image(point: Solved) -> Solved:
@@ -429,7 +429,7 @@ def _guess(half: HalfBranch, i: int) -> Solved:
     return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
 
 
-def _goes_on(half: HalfBranch, real: bool) -> bool:
+def _end_unchanged(half: HalfBranch, real: bool) -> bool:
     """Whether the last point, solved on this mesh, is nearly the same as before, and not behind a border.
 
     It may be far away for a cycle that passes a saddle within rounding.

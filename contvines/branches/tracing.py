@@ -192,7 +192,7 @@ def _opening(
     """Return the opening as a half branch, and the first point: `start`, or a nearer one if `start` lies on another branch."""
     engine, recorded = detector.engine, journal.recall(key)
     if recorded is None:
-        events, times = _looked_at(detector, origin, start, real)
+        events, times = _searched_opening(detector, origin, start, real)
         journal.record(key, {**pack(events, engine), "nearer": times})
     else:
         events, times = unpack(recorded), int(recorded.get("nearer", 0))
@@ -205,7 +205,9 @@ def _opening(
     return half, start
 
 
-def _looked_at(detector: Detector, origin: Solved, start: Solved, real: bool) -> tuple[list[Located], int]:
+def _searched_opening(
+    detector: Detector, origin: Solved, start: Solved, real: bool
+) -> tuple[list[Located], int]:
     """Return the special points of the opening, and the number of times that its end was moved nearer; 0 if that does not help."""
     engine, whole = detector.engine, detector.beside(origin, start, real)
     events, times, point = whole, 0, start

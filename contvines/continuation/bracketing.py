@@ -57,10 +57,10 @@ class Bracket:
     tolerance: float
     jump: float
     count: int = 0
-    again: bool = False  # whether the last evaluation failed
+    failed: bool = False  # whether the last evaluation failed
     wait: int = BISECTIONS  # number of bisections before the next secant
     aimed: int | None = None  # the side whose secant gave the last point
-    beyond: bool = False  # whether a secant has ended beyond the zero
+    overshot: bool = False  # whether a secant has ended beyond the zero
     sides: tuple[Side, Side] = field(default_factory=lambda: (Side(), Side()))
 
     def __post_init__(self) -> None:
@@ -90,11 +90,11 @@ class Bracket:
         If f cannot be evaluated, another point is tried, once.
         """
         if not math.isfinite(fx):
-            if self.again:
+            if self.failed:
                 return math.nan
-            self.again = True
+            self.failed = True
             return self.x1 + 0.37 * (self.x2 - self.x1)
-        self.again = False
+        self.failed = False
         self.count += 1
         self._add(x, fx)
         if (fx > 0.0) == (self.f1 > 0.0):
@@ -127,7 +127,7 @@ class Bracket:
         own = int(fx > 0.0)
         side, aimed = self.sides[own], self.aimed
         if aimed is not None and aimed != own:
-            self.beyond = True
+            self.overshot = True
         elif aimed is not None and not abs(fx) < ENOUGH * abs(side.fb):
             self.wait = BISECTIONS  # f is not smooth enough
         side.points += 1
@@ -137,8 +137,8 @@ class Bracket:
     def _ahead(self) -> float:
         """Return the next point if an inverse quadratic step is not safe: from a secant on one side, or the middle."""
         x1, x2 = self.x1, self.x2
-        if self.beyond:  # a secant ended just beyond the zero: step back a little
-            self.beyond, self.wait = False, 0
+        if self.overshot:  # a secant ended just beyond the zero: step back a little
+            self.overshot, self.wait = False, 0
             return x1 + SHORT * (x2 - x1)
         nearest, where = math.inf, 0.5 * (x1 + x2)
         if self.wait > 0:

@@ -38,10 +38,10 @@ class Judge:
     def __init__(self, rule: StepRule) -> None:
         self.rule = rule
         self.error: BaseException | None = None
-        self.callback = JUDGE(self._asked)
+        self.callback = JUDGE(self._call)
         self.address = ctypes.cast(self.callback, ctypes.c_void_p).value
 
-    def _asked(self, *numbers: float) -> float:
+    def _call(self, *numbers: float) -> float:
         try:
             return self.rule.factor(*numbers)
         except BaseException as error:

@@ -294,13 +294,13 @@ def followed(
             pending.back = meshes.moved(detector, wanted, pending.back, solve)
         return begin
 
-    def again(detector: Detector, wanted: Detector, first: Solved) -> Solved | None:
+    def restarted(detector: Detector, wanted: Detector, first: Solved) -> Solved | None:
         """Transfer the first point to a finer mesh, under a new number of the journal's entries."""
         begin = moved(detector, wanted, first)
         run.serial += begin is not None
         return begin
 
-    found, detector, first = meshes.followed(first, halves, again, real)
+    found, detector, first = meshes.followed(first, halves, restarted, real)
     finest = next(iter(found.values())).detector
     first = moved(detector, finest, first, solve=False) or first
     return _in_order(pending, found, first)
@@ -377,7 +377,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     elif pending.kind is Origin.REST:
         first = pending.origin
         if first is not None and pending.real and pending.first_step is None:
-            pending.first_step = room(engine, first, run.settings.first_step)
+            pending.first_step = shortened_step(engine, first, run.settings.first_step)
     else:
         first = engine.start(pending.u, pending.p, pending.tangent)
         if first is not None:
@@ -391,7 +391,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 # move off a special point, or it is detected on neither half; by less than a step, so that it differs from the second point
                 step = OFFSET * run.settings.first_step
             if step > 0.0:
-                first = off(engine, first, step, side)
+                first = moved_off(engine, first, step, side)
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
@@ -421,7 +421,7 @@ def _bring_near(engine: Engine, pending: Pending) -> None:
             pending.first_step = min(pending.first_step or step, step)
 
 
-def room(engine: Engine, border: Solved, step: float) -> float | None:
+def shortened_step(engine: Engine, border: Solved, step: float) -> float | None:
     """Return a shorter first step from a border that ends at a real point, if the usual step does not; else None.
 
     The branch may be real in a short window only.
@@ -433,7 +433,7 @@ def room(engine: Engine, border: Solved, step: float) -> float | None:
     return None
 
 
-def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
+def moved_off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
     """Return a point of the same branch at a small distance, ahead if possible; real or virtual as `real` says, if not None.
 
     Returns the given point if there is none.

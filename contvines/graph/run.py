@@ -198,13 +198,13 @@ class Progress(NamedTuple):
     @property
     def sentence(self) -> str:
         """The progress in one line."""
-        said = (
+        line = (
             f"{self.message}  |  {self.branches} branch{'' if self.branches == 1 else 'es'}, {self.special} special points, "
             f"{self.points} points, {self.waiting} waiting"
         )
         if (left := self.left) is not None:
-            said += f"; {left.done} of {left.known} pieces of work known so far{time_left(left.seconds)}, {left.budget:.0%} of the budget"
-        return said
+            line += f"; {left.done} of {left.known} pieces of work known so far{time_left(left.seconds)}, {left.budget:.0%} of the budget"
+        return line
 
 
 @dataclass(eq=False)

@@ -124,10 +124,10 @@ class _Leaving:
                 target.unit(np.asarray(child.tangent, dtype=float)),
                 one_sided=not generic,
                 most=_critical(engine, spectrum, critical),
-                exchanged=None if name == "plus" else self._exchange(target, spectrum, speed),
+                exchanged=None if name == "plus" else self._exchange_test(target, spectrum, speed),
             )
             most = run.settings.max_step if name == "minus" else 0.0
-            found = self._told_apart(target, search, most)
+            found = self._distinct(target, search, most)
             if not found:
                 run.remark(point.label, "no branch that leaves here was found")
             for departure in found:
@@ -160,7 +160,7 @@ class _Leaving:
             return
         for child in self.problem.offspring("hopf", point.u, point.value, point.tangent, 1j):
             target = run.engine(child.problem)
-            found = self._told_apart(target, partial(_cycles, target, child, point.value), WHOLE)
+            found = self._distinct(target, partial(_cycles, target, child, point.value), WHOLE)
             if not found:
                 run.remark(point.label, "no cycle that leaves here was found")
             for departure in found:
@@ -243,7 +243,7 @@ class _Leaving:
         exactly = partial(_cubic, problem, point.u, point.value, flip, rough)
         point.coefficient = rough if point.criticality is None else exactly
 
-    def _exchange(
+    def _exchange_test(
         self, target: Engine, spectrum: NDArray[np.complex128], speed: float | None
     ) -> Callable[[Solved], bool] | None:
         """Return a test for the exchange of stability at a multiplier -1: first point of the leaving branch -> whether its stability agrees.
@@ -278,7 +278,7 @@ class _Leaving:
         known = self.point.location_error + rounding_of_parameter(target, solved)
         return abs(solved.p - self.point.value) > known
 
-    def _told_apart(self, target: Engine, search: Search, most: float) -> list[Departure]:
+    def _distinct(self, target: Engine, search: Search, most: float) -> list[Departure]:
         """Return the branches that leave, with first points whose parameter differs from that of the special point by more than the errors.
 
         Nearer points do not show on which side of the special point the branch lies. The amplitude is doubled up to `most`; if no amplitude is large

@@ -395,8 +395,8 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
 def _kind(about: Mapping[str, Any]) -> str:
     """Return the type of a motion in a few words: symmetric, period, without impacts."""
     periods = int(about.get("periods") or 0)
-    said = ["symmetric"] if about.get("symmetric") else []
-    said += [f"period {periods}"] if periods > 1 else []
+    parts = ["symmetric"] if about.get("symmetric") else []
+    parts += [f"period {periods}"] if periods > 1 else []
     if about.get("impacts") == 0:
-        said.append("no impacts")
-    return ", ".join(said)
+        parts.append("no impacts")
+    return ", ".join(parts)
