@@ -26,14 +26,17 @@ DRAWS = 8  # random states at which formulas are compared
 
 
 class Draws:
-    """Random states, phases and signs beside the machine's own parameters."""
+    """Random states, phases and signs, with the given parameters or, with `spread`, with others near them, none of which is zero."""
 
-    def __init__(self, equations: Equations, params: np.ndarray) -> None:
+    def __init__(self, equations: Equations, params: np.ndarray, spread: bool = False) -> None:
         generator = np.random.default_rng(14)
         self.equations = equations
         self.states = generator.uniform(-1.0, 1.0, (DRAWS, len(equations.states)))
         self.clock = generator.uniform(0.0, 2.0 * np.pi, DRAWS)
         self.signs = generator.choice([-1.0, 1.0], (DRAWS, len(equations.signed)))
+        if spread:
+            parts = generator.uniform(0.1, 0.5, len(params))
+            params = np.where(params == 0.0, parts, (1.0 + parts) * params)
         self.params = np.tile(params, (DRAWS, 1))
 
     def of(
@@ -53,10 +56,10 @@ class Draws:
 
 def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, int], int | None]:
     """Walls, frictions and switches against the motion; returns what impacts do to frictions and switches (`Alphabet.flips`)."""
-    e, draws = equations, Draws(equations, params)
+    e, draws, others = equations, Draws(equations, params), Draws(equations, params, spread=True)
     flips: dict[tuple[int, int], int | None] = {}
     _check_periods(draws)
-    _check_surfaces(draws)
+    _check_surfaces(others, draws)
     for j, force in e.force.items():
         what = e.contacts[j].described
         limit = draws.of([e.limit[j]])[:, 0]
@@ -104,7 +107,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
         ):
             raise PageError(f"{what}: the rate of its gap must be linear in what push changes")
         for k in e.signed:
-            flip = _flip(draws, e.velocity[k] if k in e.velocity else e.surface[k], table)
+            flip = _flip(others, draws, j, e.velocity[k] if k in e.velocity else e.surface[k])
             if flip != 0:
                 flips[j, k] = flip
     return flips
@@ -130,7 +133,7 @@ def _check_periods(draws: Draws) -> None:
             )
 
 
-def _check_surfaces(draws: Draws) -> None:
+def _check_surfaces(others: Draws, draws: Draws) -> None:
     """Whether switches switch something, and whether contacts that would always act at once are declared apart."""
     e = draws.equations
     for j, surface in e.surface.items():
@@ -147,7 +150,7 @@ def _check_surfaces(draws: Draws) -> None:
     pairs = [*e.velocity.items(), *e.surface.items()]
     for place, (j, one) in enumerate(pairs):
         for k, other in pairs[place + 1 :]:
-            if j not in e.velocity or not _proportional(draws, one, other):
+            if j not in e.velocity or not _proportional(others, draws, one, other):
                 continue
             both = f"{e.contacts[j].described} and {e.contacts[k].described}"
             if k in e.velocity:
@@ -160,9 +163,10 @@ def _check_surfaces(draws: Draws) -> None:
             )
 
 
-def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
-    """Whether two quantities differ by a constant factor only."""
-    table = draws.of([one, other])
+def _proportional(others: Draws, draws: Draws, one: Symbol, other: Symbol) -> bool:
+    """Whether two quantities differ by a constant factor only, for all parameter values; see `_flip`."""
+    table = others.of([one, other])
+    table = table if np.isfinite(table).all() else draws.of([one, other])
     with np.errstate(all="ignore"):
         ratio = table[:, 0] / table[:, 1]
     return bool(
@@ -172,25 +176,34 @@ def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
 
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
     """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
-    e, draws = equations, Draws(equations, params)
+    e, draws, others = equations, Draws(equations, params), Draws(equations, params, spread=True)
     found = set()
     for j, surface in e.surface.items():
         rate = e.along(surface, e.rates)
         if e.without_forces.keys() & variables_of(rate):
             continue
         for k, velocity in e.velocity.items():
-            if _proportional(draws, rate, velocity):
+            if _proportional(others, draws, rate, velocity):
                 found.add((j, k))
     return frozenset(found)
 
 
-def _flip(draws: Draws, value: Symbol, table: np.ndarray) -> int | None:
-    """0: the impact leaves the velocity (or surface) alone; -1, +1: its sign afterwards; None: it may change to either."""
-    before = draws.of([value])[:, 0]
-    after = draws.of([value], states=table[:, 3:])[:, 0]
+def _flip(others: Draws, draws: Draws, wall: int, value: Symbol) -> int | None:
+    """Effect of an impact on the sign of a velocity or surface, for all parameter values.
+
+    0: none; -1, +1: the sign after the impact; None: either sign is possible. A relation that holds for the given values only does not count
+    (with `others` a wall moves whose amplitude is zero); if the formulas have no values at the others, it does.
+    """
+    e, before, rate, after = draws.equations, np.zeros(0), np.zeros(0), np.zeros(0)
+    for one in (others, draws):
+        table = one.of([value, e.gap_rate(wall), *e.impact(wall)])
+        before, rate, after = table[:, 0], table[:, 1], one.of([value], states=table[:, 2:])[:, 0]
+        if np.isfinite(table).all() and np.isfinite(after).all():
+            break
     if np.abs(after - before).max() < FORMULAS.same * (1.0 + np.abs(before).max()):
         return 0
-    ratio = before / table[:, 0]  # velocity = ratio * rate of the gap, everywhere
+    with np.errstate(all="ignore"):
+        ratio = before / rate  # velocity = ratio * rate of the gap, everywhere
     if np.all(np.isfinite(ratio)) and np.ptp(ratio) < FORMULAS.same * np.abs(ratio).max():
         return 1 if ratio[0] > 0.0 else -1  # after the impact the gap opens
     return None

@@ -76,7 +76,7 @@ def test_laws(numbers, place, phase) -> None:
 PRESSED = Machine(
     name="pressed",
     states=("x", "v"),
-    parameters={"shaken": 0.1, "shaking": 0.0, "frequency": 1.5, "press": 0.1, "rub": 0.02, "room": 0.2, "restitution": 0.75},
+    parameters={"shaken": 0.0, "shaking": 0.0, "frequency": 1.5, "press": 0.1, "rub": 0.02, "room": 0.2, "restitution": 0.75},
     phase_rate="frequency",
     motion=lambda s, phase, p, contact: (s.v, p.shaking * sin(phase) - p.press + contact.floor),
     contacts=[
