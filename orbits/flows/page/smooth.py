@@ -1,8 +1,8 @@
-"""Motions without events of a self-excited machine: equilibria and cycles of a smooth flow, on which the contacts' events are borders.
+"""Motions without events of a self-excited machine: equilibria and cycles of a smooth flow, whose borders are events of the contacts.
 
-A machine in one mode is a differential equation. `contvines.flows` solves for its equilibria and, by collocation, for its cycles; the guards of
-the mode are events of that flow, so that a branch ends where a velocity, a gap or a surface becomes zero. What happens there is left to the
-rules of the contacts: the cycle is read as an orbit with the word "", counted from an extreme of the first state that moves.
+In one mode a machine is a differential equation. `contvines.flows` solves for its equilibria and, by collocation, for its cycles. The
+guards of the mode are events of this flow, so a branch ends where a velocity, a gap or a surface becomes zero. There the rules of the
+contacts decide: the cycle becomes an orbit with the word "", whose node is at an extreme of the first state that moves.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ if TYPE_CHECKING:
     from contvines.flows.flow import BorderPoint, Problem
     from orbits.flows.protocol import Equations, Motion
 
-SAMPLES = (
-    800  # of a motion that is handed over to collocation, and of a cycle that is searched for its extreme
+SAMPLES = 800  # samples of a motion for collocation, and of a cycle in the search for its extreme
+DEGREE = (
+    7  # degree of the collocation polynomials; high, for accurate distances from contacts between mesh points
 )
-DEGREE = 7  # of cycles, whose distances from contacts are to be known well between the mesh points, too
-SECANTS = 20
-SWEEPS = 6  # of Newton's method to an equilibrium
+SECANTS = 20  # largest number of secant steps to a border
+SWEEPS = 6  # Newton steps to an equilibrium
 
 
 class Touching(NamedTuple):
-    """A motion that touches a contact, as a border of orbits."""
+    """A motion that touches a contact: a border, as problems of orbits receive it."""
 
     u: np.ndarray
     value: float
@@ -60,10 +60,10 @@ class WithoutEvents(FlowProblem):
     machine : Machine
         Self-excited.
     mode : tuple of int
-        In which nothing sticks and no wall holds.
+        A mode in which nothing sticks and no wall holds.
     params : float array (P,)
     state : float array (n,)
-        At which all guards are positive.
+        A state at which all guards are positive.
     """
 
     def __init__(
@@ -110,20 +110,20 @@ class WithoutEvents(FlowProblem):
     # ------------------------------------------------------------------ names, measures, files
     @property
     def of_cycles(self) -> dict[str, str]:
-        """The word, as orbits of machines have it."""
+        """Word and name of cycles, as orbits of machines have them."""
         return {"word": self.word.text, "name": "no events"}
 
     def measure_of(self, what: str, state: str) -> str:
-        """As the machine calls it."""
+        """Return the machine's name of a measure of a state."""
         return f"{what}_{state}"
 
     @property
     def own_measures(self) -> tuple[str, ...]:
-        """Measures of the machine beside those of any flow."""
+        """Measures of the machine besides those of every flow."""
         return tuple(name for name in measures.names(self.machine) if name not in (*self.of_states, "period"))
 
     def measure_own(self, name: str, problem: Problem, u: np.ndarray, p: float) -> float:
-        """One of these; an equilibrium has the values of a motion that lasts no time."""
+        """Return one of the `own_measures`; an equilibrium is evaluated as a motion of no duration."""
         nodes = (
             self.node(problem, u, p)[None]
             if isinstance(problem, CycleProblem)
@@ -135,7 +135,7 @@ class WithoutEvents(FlowProblem):
         return float(measures.measure(self.machine, self.word, 1, nodes[None], params[None], [name])[name][0])
 
     def described(self) -> dict[str, Any]:
-        """The machine and the mode."""
+        """Return the JSON-able machine and mode."""
         return {
             "machine": self.machine.settings(),
             "modes": list(self.word.entries(0)),
@@ -143,29 +143,29 @@ class WithoutEvents(FlowProblem):
         }
 
     def rebuilt_by(self, importable: bool) -> str:
-        """Files keep the machine's page."""
+        """Return the factory that rebuilds the problem; files contain the machine file."""
         return "orbits.flows.page.smooth:rebuild"
 
     # ------------------------------------------------------------------ what else there is
-    def population_at(  # of the machine's own class, with other columns than that of a flow
+    def population_at(  # a population of the machine, with other columns than a flow's
         self,
         values: Mapping[str, float],
         over: str | None = None,
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
     ) -> Any:
-        """Starts of the machine."""
+        """Return starts of the machine."""
         over = over or self.values.varying
         return self.machine.population(
             over, **{name: value for name, value in values.items() if name != over}
         )
 
     def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]:
-        """What the machine settles on."""
+        """Return the attractors that simulations of the machine find."""
         return self._orbits(problem, p).simulated_attractors(p)
 
     def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable motion as `simulated_attractors` lists it."""
+        """Return a stable motion in the form of `simulated_attractors`."""
         rest = {"word": None, "periods": 0, "kind": "rest"}
         return (
             rest
@@ -175,11 +175,11 @@ class WithoutEvents(FlowProblem):
 
     # ------------------------------------------------------------------ borders
     def border_kind(self, k: int) -> str:
-        """That of the contact whose guard becomes zero."""
+        """Return the kind of border at which guard k vanishes."""
         return border_kind(self.word, self.contacts[k])
 
     def beyond(self, problem: Problem, point: BorderPoint, k: int) -> list[Any]:
-        """What goes on from a cycle that touches a contact, as the contacts' rules have it."""
+        """Return the solutions beyond a border at which a cycle touches a contact, by the rules of the contacts."""
         if not isinstance(problem, CycleProblem):
             return []
         orbits, p = self._orbits(problem, float(point.value)), float(point.value)
@@ -192,7 +192,7 @@ class WithoutEvents(FlowProblem):
         return list(orbits.beyond(Touching(u, p, tangent, self.contacts[k])))
 
     def dead_end(self, k: int, x: np.ndarray, when: float | None = None) -> str:
-        """Where the contact is touched."""
+        """Return the sentence that says which contact is touched."""
         return (
             super()
             .dead_end(k, x, when)
@@ -201,7 +201,7 @@ class WithoutEvents(FlowProblem):
         )
 
     def _orbits(self, problem: Problem, p: float):
-        """The same motions as orbits with the word ""."""
+        """Return the problem of the same motions as orbits with the word ""."""
         from orbits.problem import OrbitProblem
 
         values = {**problem.parameters, problem.parameter: p}
@@ -209,7 +209,7 @@ class WithoutEvents(FlowProblem):
         return OrbitProblem(self.machine, self.word, 1, problem.parameter, params)
 
     def node(self, problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
-        """Period and state at the extreme of the first state that moves, shape (n + 1,)."""
+        """Return period and state at the extreme of the first state that moves, shape (n + 1,)."""
         orbit = problem.orbit(u, p)
         return extreme_of(
             self.machine, self.word, orbit(np.linspace(0.0, orbit.period, SAMPLES)), orbit.period
@@ -217,19 +217,19 @@ class WithoutEvents(FlowProblem):
 
 
 def function_of_one(f: Callable) -> Callable:
-    """The first of the values that a function returns."""
+    """Return a function that gives the first value of a function's result."""
     return lambda x, p: f(x, p)[0] + 0.0 * x[0]
 
 
 def extreme_of(machine: Machine, word: Word, states: np.ndarray, period: float) -> np.ndarray:
-    """The node of a motion without events, next to which Newton's method finds it: where the first state that moves is largest."""
+    """Return an approximate node of a motion without events: period, and the sampled state at which the first moving state is largest."""
     e = machine.equations
     first = moving(e, e.pattern(e.pattern_key(word.entries(0))).rates)
     return np.append(period, states[int(np.argmax(states[:, first]))])
 
 
 def on_border(equations: Equations, u: np.ndarray, p: float, margin: int) -> tuple[np.ndarray | None, float]:
-    """The orbit beside a guess on which a margin is zero, by the secant method in the parameter."""
+    """Return the orbit near a guess at which a margin is zero, and its parameter, by the secant method; None if it is not found."""
     row = np.empty(2 * equations.n_multipliers + equations.n_margins)
 
     def at(p: float) -> tuple[np.ndarray, float]:
@@ -251,12 +251,12 @@ def on_border(equations: Equations, u: np.ndarray, p: float, margin: int) -> tup
 
 
 def smooth(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray) -> WithoutEvents:
-    """The flow of a machine in a mode: one, whoever asks, so that its motions can be compared.
+    """Return the flow of a machine in a mode; the same object at every call, so that its motions can be compared.
 
     Raises
     ------
     ValueError
-        If something sticks or is held in the mode, or the state is not in it.
+        If something sticks or is held in the mode.
     """
     for contact, entry in zip(machine.contacts, mode, strict=True):
         if (isinstance(contact, DryFriction) and entry == STUCK) or (
@@ -270,7 +270,7 @@ def smooth(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: n
 
 
 def beside(machine: Machine, state: Mapping[str, float] | None = None, **parameters: float) -> WithoutEvents:
-    """The flow in the mode of a state given by names, which begins there.
+    """Return the flow that begins at a state given by names, in the mode of this state.
 
     Raises
     ------
@@ -285,12 +285,12 @@ def beside(machine: Machine, state: Mapping[str, float] | None = None, **paramet
 
 
 def cycles_of(orbit: Motion):
-    """The cycle, by collocation, of a self-excited orbit without events.
+    """Return the cycle, by collocation, of a self-excited orbit without events.
 
     Raises
     ------
     ValueError
-        If Newton's method does not lead to it.
+        If Newton's method does not converge.
     """
     machine = orbit.model
     assert isinstance(machine, Machine)
@@ -301,33 +301,33 @@ def cycles_of(orbit: Motion):
 
 
 def cycle_near(machine: Machine, word: Word, params: np.ndarray, state: np.ndarray) -> np.ndarray | None:
-    """The node of the cycle without events on which a motion settles, shape (n + 1,); None where it does not."""
+    """Return the node of the cycle without events on which a motion settles, shape (n + 1,); None if it settles on no such cycle."""
     try:
         flow = smooth(machine, word.entries(0), params, state)
         orbit = flow.attractor_at(machine.named(params), state)
-    except ValueError:  # it comes to rest, goes on to an event, or does not recur
+    except ValueError:  # the motion comes to rest, reaches an event, or does not recur
         return None
     return extreme_of(machine, word, orbit(np.linspace(0.0, orbit.period, SAMPLES)), orbit.period)
 
 
 class Rest(NamedTuple):
-    """An equilibrium, which begins branches as an orbit does."""
+    """An equilibrium, from which branches can begin as from an orbit."""
 
     flow: WithoutEvents
     state: np.ndarray
     parameters: dict[str, float]
 
     def problem(self, parameter: str):
-        """Equilibria against a parameter."""
+        """Return the problem of equilibria against a parameter."""
         return self.flow.equilibria(parameter, self.parameters)
 
     def seed(self, problem: CycleProblem) -> tuple[np.ndarray, float]:
-        """The state, and the value of the parameter that varies."""
+        """Return the state, and the value of the varying parameter."""
         return self.state, self.parameters[problem.parameter]
 
 
 def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray) -> Rest | None:
-    """The equilibrium at a state at which a motion has come to rest, by Newton's method; None where there is none."""
+    """Return the equilibrium near a state at which a motion has come to rest, by Newton's method; None if there is none."""
     try:
         flow = smooth(machine, mode, params, state)
     except ValueError:
@@ -342,7 +342,7 @@ def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state
 
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> Equilibria | CycleProblem | None:
-    """Equilibria or cycles of a machine without events, from what ``describe()`` returned; None where its machine file is not to be run."""
+    """Rebuild the problem of equilibria or cycles from what ``describe()`` returned; None if its machine file must not be executed."""
     about = description["flow"]
     machine = machine_again(about["machine"], trust)
     if machine is None:

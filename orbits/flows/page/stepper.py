@@ -1,4 +1,4 @@
-"""The stepper of a declared machine: from event to event. It knows no equations of orbits and no words."""
+"""The stepper of declared machines: moves a state from event to event, without words and without equations of orbits."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from orbits.machines.page.patterns import Guard
 
 TWO_PI = 2.0 * np.pi
-HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
+HALVINGS = 6  # bisections of the way to the top of a hop; also corrections of gap rates
 
 
 class Tools(NamedTuple):
-    """What is compiled for a mode: flights up to the first guard that falls, flights that go on, and the guards with their rates."""
+    """Compiled functions of one mode: flights to the first vanishing guard, flights past guards, and guards with their rates."""
 
     run: Run
     watch: Watch
@@ -40,10 +40,11 @@ class Stepper:
     ----------
     state : float array (n,)
     modes : tuple of int
+        Mode of each contact.
     clock : float
-        The phase in [0, 2 pi) of a forced machine; else time since the last event.
+        The phase in [0, 2 pi) of a forced machine; else the time since the last event.
     base : float
-        Whole turns (or time) before `clock`.
+        Whole turns times 2 pi (or time) before `clock`.
     """
 
     def __init__(self, machine: Machine, params: np.ndarray) -> None:
@@ -55,17 +56,17 @@ class Stepper:
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
         self.count = 0  # events so far
-        self._last = -1  # the contact of the event before, where another one may follow at the same instant
+        self._last = -1  # contact of the last event, if another event may follow at the same instant
         self._made: dict[tuple[int, ...], Tools] = {}
         self._numbers: dict[tuple[int, ...], np.ndarray] = {}
         self._pushes: dict[tuple[int, tuple[int, ...]], Values] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
-        self._touched = {  # frictions and switches whose sign an impact may change, and where the impact's map tells it
+        self._touched = {  # per wall: frictions and switches whose sign an impact may change, with their places in the impact's map
             w: [(j, places[j]) for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
             for w in self.equations.gap
         }
         self._frictions = [*self.equations.velocity]
-        self._tied = {  # frictions that stop what closes and opens a wall's gap
+        self._tied = {  # per wall: frictions whose velocity is the rate of the wall's gap
             w: [
                 j
                 for (wall, j), sign in machine.alphabet.flips.items()
@@ -75,20 +76,23 @@ class Stepper:
         }
         self._values = self.compiled.contact_values()
         self._impacts = {w: self.compiled.impact_map(w) for w in self._touched}
-        self._fresh = False  # something starts from rest: leave the surface before looking for events
+        self._fresh = False  # a guard starts at zero: leave its surface before searching for events
         self._hop = 0.0  # time to the top of a short hop from a wall
-        self._due: list[int] = []  # walls that an impact elsewhere makes hit at the same instant
+        self._due: list[int] = []  # walls that are hit at the same instant because of an impact elsewhere
 
     # ------------------------------------------------------------------ beginning
     def renew(self, params: np.ndarray) -> None:
-        """Go on with other parameters, on which neither gaps nor surfaces nor velocities of contacts depend; what sticks may begin to slide."""
+        """Continue with other parameters; friction that sticks may begin to slide.
+
+        Gaps, switch surfaces and velocities of contacts must not depend on the parameters that changed.
+        """
         self.params = params
         self._numbers.clear()
         if any(self.modes[j] == STUCK for j in self._frictions):
             self.start(self.state, self.base + self.clock)
 
     def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
-        """Begin at a state; the modes follow from it unless they are given.
+        """Begin at a state; the modes follow from it if they are not given.
 
         Raises
         ------
@@ -116,7 +120,7 @@ class Stepper:
                     f"the gap of wall {self.machine.contacts[j].letter!r} is {values[j]:.6g} at the start: bodies overlap; "
                     "give a start with all gaps at 0 or above"
                 )
-        for j in self._frictions * len(self._frictions):  # one that slips may be too much for another
+        for j in self._frictions * len(self._frictions):  # the slip of one may overcome the next one
             if self.modes[j] == STUCK:
                 self.modes = self._with(j, self._at_rest(j))
         self._agree()
@@ -126,7 +130,7 @@ class Stepper:
                 self._struck(j)
 
     def _agree(self) -> None:
-        """Frictions that begin at rest, until each slides the way it is pushed by what the others do."""
+        """Repeat the decisions of frictions at rest until each slides in the direction in which the others push it."""
         for _ in self._frictions:
             before = self.modes
             for guard in self._vanishing():
@@ -135,7 +139,7 @@ class Stepper:
                 return
 
     def contact_values(self) -> np.ndarray:
-        """Gaps, velocities and surfaces at the state: one value per contact."""
+        """Return the gap, velocity or surface function of each contact at the present state."""
         if not self.machine.contacts:
             return np.zeros(0)
         return self._now(self._values)
@@ -143,7 +147,7 @@ class Stepper:
     # ------------------------------------------------------------------ laws
     @property
     def _tools(self) -> Tools:
-        """Those of the mode."""
+        """Compiled functions of the present mode."""
         found = self._made.get(self.modes)
         if found is None:
             key, compiled = self.equations.pattern_key(self.modes), self.compiled
@@ -154,18 +158,18 @@ class Stepper:
 
     @property
     def numbers(self) -> np.ndarray:
-        """The runtime numbers of the mode."""
+        """Runtime numbers of the present mode."""
         found = self._numbers.get(self.modes)
         if found is None:
             found = self._numbers[self.modes] = self.compiled.numbers(self.params, self.modes)
         return found
 
     def _now(self, values: Values) -> np.ndarray:
-        """Functions at the state, in the mode."""
+        """Evaluate functions at the present state and mode."""
         return values.one(self.state, self.clock, self.numbers)
 
     def _guards(self, modes: tuple[int, ...] | None = None) -> list[tuple[float, float, Guard]]:
-        """Value and rate of every guard at the state, in a mode (that one in which it is), and the guard."""
+        """Return value, rate and guard of every guard at the present state, in a mode (by default the present one)."""
         kept = self.modes
         self.modes = kept if modes is None else modes
         tools = self._tools
@@ -174,7 +178,7 @@ class Stepper:
         return list(zip(row[:count], row[count:], tools.guards))
 
     def _move(self, until: float) -> None:
-        """Move on to a clock, whatever happens."""
+        """Move on to a clock without looking for events."""
         self._tools.watch.move(self.state, self.clock, until, self.numbers)
         self.clock = until
 
@@ -184,7 +188,7 @@ class Stepper:
         return tuple(changed)
 
     def _at_rest(self, friction: int) -> int:
-        """The mode of a friction whose velocity is zero: stuck, or the sign of the motion that begins."""
+        """Return the mode of a friction at zero velocity: stuck, or the sign of the motion that begins."""
         for value, _, guard in self._guards(self._with(friction, STUCK)):
             if guard.contact == friction and value < 0.0:
                 return guard.sign
@@ -194,7 +198,7 @@ class Stepper:
         return float(self._now(self._impacts[wall])[len(self.state)])
 
     def _impact(self, wall: int) -> int:
-        """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
+        """Apply Newton's law; return HOLD if impacts have accumulated or leave no speed, else HIT."""
         row, n = self._now(self._impacts[wall]), len(self.state)
         before = float(row[n])
         self.state[:] = row[:n]
@@ -213,8 +217,11 @@ class Stepper:
         return HIT
 
     def _struck(self, wall: int) -> int:
-        """An impact, and what it does to the other walls that are touched: one that holds lets go, unless it would be back at once; one that is
-        pressed hits at the same instant."""
+        """Apply an impact and its consequences at other walls that are touched; return HIT or HOLD.
+
+        A wall that holds releases its body unless the hop would be part of accumulated impacts; a wall that is approached is hit at the same
+        instant.
+        """
         kind = self._impact(wall)
         near = EVENTS.zero * (1.0 + np.abs(self.state).max())
         gaps = self.contact_values()
@@ -238,7 +245,7 @@ class Stepper:
         return kind
 
     def _piled_up(self, wall: int, rate: float) -> bool:
-        """Whether the hop from a wall that holds, at this rate of the gap, is one of those that have piled up."""
+        """Return whether a hop from a wall that holds, at this rate of the gap, belongs to accumulated impacts."""
         kept, fresh = self.modes, self._fresh
         self._let_go(wall, opening=rate > 0.0)
         push = self._push_back(wall)
@@ -246,7 +253,7 @@ class Stepper:
         return push < 0.0 and rate * rate < EVENTS.together * abs(push) * (1.0 + np.abs(self.state).max())
 
     def _rest(self, walls: list[int], near: float) -> None:
-        """Take out the rates of gaps of walls that hold, each of which changes the others by as much as the masses differ."""
+        """Remove the gap rates of walls that hold; each correction changes the other rates, so it is repeated."""
         for _ in range(HALVINGS):
             moving = [wall for wall in walls if abs(self._gap_rate(wall)) > near]
             if not moving:
@@ -255,7 +262,7 @@ class Stepper:
                 self.state[:] = self._now(self.compiled.settled(wall))
 
     def _let_go(self, wall: int, opening: bool = True) -> None:
-        """A wall holds no more; frictions that it held slide as its gap opens or closes."""
+        """End the hold of a wall; frictions tied to it slide as its gap opens or closes."""
         modes = list(self._with(wall, FREE))
         for (of, k), sign in self.machine.alphabet.flips.items():
             if of == wall and sign is not None and k not in self.absent:
@@ -264,12 +271,12 @@ class Stepper:
         self._fresh = True
 
     def _off(self, wall: int) -> None:
-        """Of a body that sticks at a wall: the gap is opened by roundoff, for it would fall through zero by that again and again."""
+        """Open the gap of a body that sticks at a wall by roundoff; otherwise roundoff would trigger impacts again and again."""
         slopes, gap = self._now(self.compiled.gap_slopes(wall)), float(self.contact_values()[wall])
         self.state += (EVENTS.zero * (1.0 + np.abs(self.state).max()) - gap) * slopes / float(slopes @ slopes)
 
     def _push_back(self, wall: int) -> float:
-        """Acceleration of a free wall's gap."""
+        """Return the acceleration of a free wall's gap."""
         values = self._pushes.get((wall, self.modes))
         if values is None:
             key = self.equations.pattern_key(self.modes)
@@ -277,14 +284,14 @@ class Stepper:
         return float(self._now(values)[0])
 
     def _hold(self, wall: int) -> int:
-        """Rest on a wall: the rate of the gap that is left is taken out."""
+        """Begin to rest on a wall: remove the remaining rate of the gap."""
         self.state[:] = self._now(self.compiled.settled(wall))
         modes = list(self._with(wall, HELD))
         values = self.contact_values()
-        for j, _ in self._touched[wall]:  # the last impact may have turned a velocity that is left as it was
+        for j, _ in self._touched[wall]:  # the last impact may have changed the sign of a velocity
             if modes[j] != ABSENT:
                 modes[j] = 1 if values[j] > 0.0 else -1 if values[j] < 0.0 else modes[j]
-        for j in self._tied[wall]:  # the same contact keeps the velocity at zero: friction need not
+        for j in self._tied[wall]:  # the hold keeps the velocity at zero, so friction is absent
             modes[j] = ABSENT
         self.modes = tuple(modes)
         return HOLD
@@ -296,12 +303,12 @@ class Stepper:
         Returns
         -------
         (contact, kind, sign) or None
-            Of the event that happened; None: the time was reached.
+            The event; None if `until` was reached.
 
         Raises
         ------
         SimulationError
-            If the motion blows up, or a switch would slide.
+            If the motion diverges, or would slide along a switch surface.
         """
         end = until - self.base
         if self._due:
@@ -339,25 +346,27 @@ class Stepper:
                 return event
 
     def _at_once(self) -> tuple[int, int, int] | None:
-        """What happens together with the event before: alike bodies begin to slip, and come to rest, at one instant, and what an event adds to the
-        forces may be more than another friction holds; a quantity that begins at zero or below is not seen to fall through it.
+        """Return an event at the same instant as the last one, or None.
+
+        Equal bodies begin to slip, or come to rest, at the same instant, and an event may add a force that another friction cannot hold. Such
+        events are found here because a guard that begins at zero or below has no zero crossing.
         """
         guard = next((guard for guard in self._vanishing() if guard.contact != self._last), None)
         self._last = -1 if guard is None else guard.contact
         return None if guard is None else self._happened(guard)
 
     def _first(self, guard: Guard) -> Guard:
-        """Of the turns and slips of several bodies at one instant the first in the machine's order.
+        """Return, of simultaneous turns and slips of several bodies, the first one in the machine's order.
 
-        Which one roundoff meets first is chance. What follows is the same: each changes its own mode, no state, and one that the others undo
-        happens again at once.
+        Otherwise roundoff would decide. The result is the same: each event changes only its own mode, and one that the others undo happens
+        again at once.
         """
         if len(self._frictions) < 2 or guard.kind not in (SLIP, TURN):
             return guard
         return min([guard, *self._vanishing()], key=lambda one: one.contact)
 
     def _vanishing(self) -> list[Guard]:
-        """Turns and slips that happen now, and walls that would have to pull."""
+        """Return the guards of turns and slips that happen now, and of walls that would have to pull."""
         touch, together = EVENTS.touch, EVENTS.together
         return [
             guard
@@ -367,7 +376,7 @@ class Stepper:
         ]
 
     def _lost(self, state: np.ndarray, clock: float) -> str:
-        """Why a flight from a state came to no number."""
+        """Return the reason why a flight from a state gave no finite number."""
         name = repr(self.machine.name)
         for x, c in ((state, clock), (self.state, self.clock)):
             found = singular_at(self.equations, self.params, self.modes, x, c)
@@ -376,20 +385,23 @@ class Stepper:
         return f"the motion of {name} left the range of numbers: give parameters and a start of moderate size"
 
     def _leave(self, end: float) -> None:
-        """Leave a surface on which a quantity starts without a rate, unless something else happens first."""
+        """Leave a surface on which a guard starts without a rate, unless another event happens first."""
         if not end > self.clock:
             return
         before, begin = self.state.copy(), self.clock
         self._move(end)
         for value, rate, guard in self._guards():
-            if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # a gap that opens is negative by roundoff
+            if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # the opening gap is negative by roundoff
                 self.state, self.clock = before, begin
                 if self.contact_values()[guard.contact] <= EVENTS.zero * (1.0 + np.abs(self.state).max()):
                     self._off(guard.contact)
                 return
 
     def _rise(self, end: float) -> None:
-        """Go to the top of a short hop: its end is then looked for from there, for beside a zero at the very beginning another one may be lost."""
+        """Move to the top of a short hop.
+
+        The end of the hop is searched from there, because a zero at the beginning of a flight can hide a second one close to it.
+        """
         before, begin = self.state.copy(), self.clock
         for _ in range(HALVINGS):
             there = begin + self._hop * self.clock_rate
@@ -401,7 +413,7 @@ class Stepper:
             self._hop *= 0.5
 
     def _settle_touches(self) -> None:
-        """A start on the surface of a switch that is only touched is on the side to which the flow leads."""
+        """After a start on a switch surface that is only touched, choose the side to which the flow leads."""
         near = EVENTS.touch * (1.0 + np.abs(self.state).max())
         for value, rate, guard in self._guards():
             if guard.kind == SWITCH and abs(value) < near and abs(rate) < near:
@@ -423,7 +435,7 @@ class Stepper:
             self.clock = 0.0
 
     def _touches(self, switch: int) -> bool:
-        """Whether the surface of a switch is only touched; the state has then moved past it."""
+        """Return whether a switch surface is only touched; if so, the state has moved past it."""
         place, rate = next((k, r) for k, (_, r, g) in enumerate(self._guards()) if g.contact == switch)
         if abs(rate) > EVENTS.touch * (1.0 + np.abs(self.state).max()):
             return False
@@ -435,20 +447,20 @@ class Stepper:
         return False
 
     def _driven(self, friction: int) -> int | None:
-        """A wall that holds a body and moves by itself, so that the friction cannot stop it; None where there is none."""
+        """Return a moving wall that holds the friction's body, so that the friction cannot stop it; None if there is none."""
         wall = next(
             (w for w in self._touched if self.modes[w] == HELD and friction in dict(self._touched[w])), None
         )
         if wall is None:
             return None
-        # the reserves to both sides add up to twice the limit, times what a unit of force moves
+        # the reserves of both directions add up to twice the limit times the acceleration per unit of force
         freedom = sum(v for v, _, g in self._guards(self._with(friction, STUCK)) if g.contact == friction)
         return None if freedom > 0.0 else wall
 
     def _turned_by(self, wall: int, friction: int) -> tuple[int, int, int]:
-        """The velocity of a friction changes its sign while a wall that moves holds the body: it turns, unless the wall would have to pull then.
+        """Return the event when a friction's velocity changes sign while a moving wall holds the body: a turn, or a release.
 
-        Where the wall lets go what becomes of the velocity is the next event.
+        The wall releases the body if it would have to pull after the turn; the fate of the velocity is then the next event.
         """
         turned = self._with(friction, -self.modes[friction])
         if any(v < 0.0 for v, _, g in self._guards(turned) if g.contact == wall and g.kind == RELEASE):
@@ -471,7 +483,7 @@ class Stepper:
             before = self.modes[j]
             after = self._at_rest(j)
             if after == before:
-                return None  # it only touches zero
+                return None  # the velocity only touches zero
             self.modes = self._with(j, after)
             return j, STICK if after == STUCK else TURN, after
         if kind == SLIP:
