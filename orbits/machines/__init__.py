@@ -1,1 +1,1 @@
-"""Machines: one file each; `base` has what they all offer, `names` their names, `catalogue` finds them."""
+"""Built-in and declared machines: one file for each; `base` and `varying` are their common bases, `names` their names."""

@@ -1,17 +1,15 @@
-"""What every built-in machine offers: an absorber between two walls of a cavity.
+"""Base of the built-in machines: an absorber between two walls of a cavity.
 
-The contract, in words
-----------------------
-1. A machine is a frozen dataclass in a file of its own. `table` lists all numbers that its maps depend on, in the order of the
-   compiled kernels' parameter vector: name, meaning, unit, symbol and limits (`orbits.machines.parameters`). Its fields are those
-   of them that belong to the machine; a name that is no field (`amplitude` of the reduced absorber) is given with each orbit.
-   Studies, refusals and tables are made from the table.
-2. `name` is that of its flow: of its kernels and stepper in the native core, and of its numbers in their reference (`orbits.machines.reference`).
-   `moving_cavity` says whether the cavity has a motion of its own.
-3. All that follows from the names in the table is composed once: walls, friction, losses, mirror images, random starts, and `rest`, the motion
-   without events (`orbits.machines.rest`). A name that ends in ``_left`` and ``_right`` tells the sides apart; ``slope`` inclines the cavity,
-   ``distance_left`` and ``distance_right`` move its walls.
-4. `start_nodes` yields closed forms to start from; `own_measures` names what is measured beside the common ones (`orbits.flows.native.measures`).
+1. A machine is a frozen dataclass in a file of its own. `table` lists all numbers of its equations, in the order of the compiled
+   kernels' parameter vector: name, meaning, unit, symbol and limits (`orbits.machines.parameters`). The fields of the dataclass are
+   the parameters that belong to the machine; the others (`amplitude` of the reduced absorber) are given with each orbit.
+   Checks, studies and tables use the table.
+2. `name` selects kernels and stepper in the native core, and the equations of their reference (`orbits.machines.reference`).
+   `moving_cavity` says whether the cavity is an oscillator with states of its own.
+3. This base derives everything that follows from the names in the table: walls, friction, losses, mirror images, random starts, and
+   `rest`, the motion without events (`orbits.machines.rest`). Names that end in ``_left`` and ``_right`` belong to one side;
+   ``slope`` inclines the cavity, ``distance_left`` and ``distance_right`` place its walls.
+4. `start_nodes` yields orbits in closed form; `own_measures` names measures besides the common ones (`orbits.flows.native.measures`).
 """
 
 from __future__ import annotations
@@ -38,29 +36,29 @@ ONE = np.float64(1.0)
 
 
 class Model(Varying):
-    """Base of the machines; see the contract at the top of `orbits.machines.base`."""
+    """Base of the built-in machines; see the top of `orbits.machines.base`."""
 
     name: str
     flow: str = "native"
     forced: bool = True
     in_cavity: ClassVar[bool] = True
     moving_cavity: ClassVar[bool] = False
-    """Whether the cavity has a motion of its own, v and v' in the state and in its nodes; else it moves as v = C sin(Omega tau)."""
+    """Whether the cavity is an oscillator, with v and v' in states and nodes; otherwise it moves as v = C sin(Omega tau)."""
     phase_rate: ClassVar[str] = "frequency"
-    """The parameter that is the forcing's frequency."""
+    """Name of the forcing frequency."""
     driven_by: ClassVar[str]
-    """The parameter that drives the machine: an orbit must have it, a machine need not."""
+    """Name of the parameter for the strength of the forcing; every orbit needs its value, a machine need not have one."""
     table: ClassVar[tuple[Parameter, ...]]
     default_measure: ClassVar[str] = "B"
-    """What pictures show where no measure is named: ``B`` (in a sweep at every impact), or a measure of the whole motion."""
+    """Default measure of pictures: ``B`` (in a sweep at every impact), or a measure of the whole motion."""
     own_measures: ClassVar[tuple[str, ...]] = ()
     patience: int = 0
-    """How often a start that is looked for by simulation may be simulated four times longer."""
+    """How often a simulation in search of an orbit may be made four times longer."""
     closed_words: ClassVar[tuple[str, ...]] = ()
-    """Words of one forcing period of whose orbits `start_nodes` has closed forms."""
+    """Words of one forcing period for which `start_nodes` has closed forms."""
 
     settable: ClassVar[tuple[Parameter, ...]]
-    """What may be given: the table, and names that stand for several of its numbers."""
+    """Parameters that can be given: those of the table, and names that stand for several of them."""
 
     limits: ClassVar[Mapping[str, Limits]]
 
@@ -82,7 +80,13 @@ class Model(Varying):
         return Rest(self.name)
 
     def __new__(cls, *values: object, **options: object) -> Self:
-        """A machine; a name that it does not have is refused with those that it has, one that is missing with its meaning."""
+        """Check the names of parameters.
+
+        Raises
+        ------
+        TypeError
+            If a parameter is unknown or missing; the message lists the known names, or the meaning of the missing one.
+        """
         if values:
             raise TypeError(
                 f"{cls.__name__} takes its parameters by name, as restitution=0.76, not {values[0]!r} alone"
@@ -94,7 +98,7 @@ class Model(Varying):
                 raise TypeError(
                     f"{cls.__name__} has no parameter {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
                 )
-        # copies are made without any, and filled later
+        # copies are constructed without options and filled later
         absent = [
             entry.name for entry in own if entry.default is MISSING and options and entry.name not in options
         ]
@@ -113,16 +117,16 @@ class Model(Varying):
         self._check_together()
 
     def _check_together(self) -> None:
-        """Refuse values that make no sense together."""
+        """Raise ParameterError for values that contradict one another."""
 
     @classmethod
     def parameter(cls, name: str) -> Parameter:
-        """The entry of the table with this name.
+        """Return the table's entry of a parameter.
 
         Raises
         ------
         ParameterError
-            If there is none.
+            If the name is unknown.
         """
         found = next((entry for entry in cls.settable if entry.name == name), None)
         if found is None:
@@ -131,19 +135,19 @@ class Model(Varying):
 
     @classmethod
     def field_names(cls) -> tuple[str, ...]:
-        """Parameters that belong to the machine itself; the others are given with each orbit."""
+        """Return the parameters that belong to the machine itself; the others are given with each orbit."""
         return tuple(entry.name for entry in fields(cls))  # type: ignore[arg-type]
 
     @classmethod
     def defaults(cls) -> dict[str, Any]:
-        """Default of each field: ``...`` where it must be given, None where it may be left to each orbit."""
+        """Return the default of each field: ``...`` if it must be given, None if it may be left to each orbit."""
         return {
             entry.name: ... if entry.default is MISSING else entry.default
             for entry in fields(cls)  # type: ignore[arg-type]
         }
 
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """The parameter vector, shape (P,), with `values` in place of or beside the machine's own.
+        """Return the parameter vector, shape (P,); `values` replace or complete the machine's own.
 
         Raises
         ------
@@ -162,69 +166,70 @@ class Model(Varying):
         return np.array(result)
 
     def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter cannot have.
+        """Check a value of one parameter.
 
         Raises
         ------
         ParameterError
-            Naming the parameter, the value and a way out.
+            If the value is impossible; the message names parameter, value and remedy.
         """
         for entry in self.settable:
             if entry.name == name:
                 entry.number(value)
 
     def _own(self) -> dict[str, Any]:
-        """Its fields by name."""
+        """Return the fields by name."""
         return {name: getattr(self, name) for name in self.field_names()}
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Measures that its orbits have; a peak force only where the contact time is known."""
+        """Measures of its orbits; a peak force only if the contact time is known."""
         known = (*COMMON, *self.own_measures)
         if self.contact_time is None:
             known = tuple(name for name in known if name != "peak_force")
         return known + tuple(mean for mean, name in MEANS.items() if name in known)
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
-        """The machine's own fields by name, ready for JSON; those of a declared machine are its parameters, at `params` where they are given."""
+        """Return the machine's fields by name, ready for JSON; `params` only matter to declared machines."""
         own = self._own()
         return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
 
     def changed(self, **values: object) -> Self:
-        """The same machine with other values of its fields.
+        """Return the same machine with other values of its fields.
 
         Raises
         ------
         ParameterError
-            If a value is one that the parameter cannot have.
+            If a value is impossible.
         """
         return type(self)(**(self._own() | values))
 
     # ------------------------------------------------------------------ mechanics
     @classmethod
     def column(cls, params: np.ndarray, name: str) -> Reals:
-        """Entry `name` of a parameter vector, or that column of many of them."""
+        """Return entry `name` of a parameter vector, or this column of many vectors."""
         j = cls.parameter_names.index(name)
         return params[j] if params.ndim == 1 else params[..., j]
 
     def phase_speed(self, params: np.ndarray) -> Reals:
-        """How fast the phase grows, in radians per unit of the machine's own time; shapes follow `params` (..., P)."""
+        """Return the rate of the phase, radians per unit of the machine's time; shape of `params` (..., P) without the last axis."""
         return self.column(params, self.phase_rate)
 
     def shakes(self, name: str) -> bool:
-        """Whether a parameter says how strongly the machine is shaken."""
+        """Return whether a parameter is the strength of the forcing."""
         return name == self.driven_by
 
     def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
-        """Where nothing shakes the machine: the parameter at fault with its value, and a value that shakes it; else None."""
+        """Return None if the machine is forced; otherwise the parameter with its zero value, and a value that forces the machine."""
         if self.column(params, self.driven_by) != 0.0:
             return None
         return f"{self.driven_by} = 0", f"{self.driven_by} = {self.parameter(self.driven_by).example:g}"
 
     def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
-        """Whether mirror images are motions of this machine, at these parameters and however `varying` varies.
+        """Return whether mirror images of motions are motions of this machine, at these parameters and at all values of `varying`.
 
-        Level, and with one coefficient of restitution and of friction; unlike distances of the walls have the middle between them.
+        This needs a level cavity, and equal restitution and friction on both sides. Distances of the walls may differ: images are taken about the
+        middle between the walls.
         """
         if varying == "slope" or ("slope" in self.parameter_names and self.column(params, "slope") != 0.0):
             return False
@@ -235,7 +240,7 @@ class Model(Varying):
 
     @classmethod
     def sides(cls, params: np.ndarray, name: str) -> tuple[Any, Any]:
-        """A number of the left and of the right side; one that the table has once is that of both."""
+        """Return a parameter of the left and of the right side; a parameter without sides is that of both."""
         if f"{name}_left" in cls.parameter_names:
             return cls.column(params, f"{name}_left"), cls.column(params, f"{name}_right")
         both = cls.column(params, name)
@@ -243,23 +248,23 @@ class Model(Varying):
 
     @classmethod
     def weight(cls, params: np.ndarray) -> Reals:
-        """g cos(slope), with which gravity presses the absorber on its floor."""
+        """Return g cos(slope), the acceleration that presses the absorber on its floor."""
         gravity = cls.column(params, "gravity")
         return gravity * np.cos(cls.column(params, "slope")) if "slope" in cls.parameter_names else gravity
 
     @classmethod
     def friction_acceleration(cls, params: np.ndarray) -> float:
-        """a = (1 + eps) mu g cos(slope), the friction's relative acceleration (dimensionless); the larger of both directions'."""
+        """Return a = (1 + eps) mu g cos(slope), the relative acceleration by friction (dimensionless), for the larger mu of both directions."""
         left, right = cls.sides(params, "friction")
         return float((1.0 + cls.column(params, "mass_ratio")) * max(left, right) * cls.weight(params))
 
     def frictionless(self, params: np.ndarray) -> bool:
-        """Whether turns are no events."""
+        """Return whether there is no friction, so that turns are no events."""
         return self.friction_acceleration(params) == 0.0
 
     @classmethod
     def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """v and v' at nodes (m, L, n) with parameter vectors (m, P), each of shape (m, L)."""
+        """Return v and v' at nodes (m, L, n) with parameter vectors (m, P), each of shape (m, L)."""
         if cls.moving_cavity:
             return nodes[:, :, 2], nodes[:, :, 3]
         amplitude, omega = (
@@ -269,7 +274,7 @@ class Model(Varying):
 
     @classmethod
     def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
-        """v' at a node (n,), and its derivatives with respect to the node's entries, shape (n,)."""
+        """Return v' at a node (n,), and its derivatives by the node's entries, shape (n,)."""
         if cls.moving_cavity:
             return float(node[3]), np.array([0.0, 0.0, 0.0, 1.0])
         speed, phase = (
@@ -280,7 +285,7 @@ class Model(Varying):
 
     @classmethod
     def walls(cls, params: np.ndarray) -> tuple[Any, Any]:
-        """w at the left and at the right wall; shapes follow `params` (..., P)."""
+        """Return w at the left and at the right wall; shape of `params` (..., P) without the last axis."""
         if "distance_left" in cls.parameter_names:
             left, right = cls.sides(params, "distance")
             return left, -right
@@ -294,16 +299,16 @@ class Model(Varying):
         length, rate = (
             float(min(left, -right)),
             float(self.column(params, self.phase_rate)),
-        )  # a far wall may be out of reach
+        )  # the nearer wall: the other one may be out of reach
         return length if 0.0 < length < math.inf else 1.0, rate if 0.0 < rate < math.inf else 1.0
 
     def middle(self, params: np.ndarray) -> Reals:
-        """w in the middle between the walls, about which mirror images are taken; shapes follow `params` (..., P)."""
+        """Return w in the middle between the walls, about which mirror images are taken."""
         left, right = self.walls(params)
         return 0.5 * (left + right)
 
     def image(self, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Mirrored about the middle between the walls."""
+        """Return nodes mirrored about the middle between the walls."""
         image, middle = super().image(word, nodes, params), np.asarray(self.middle(params))
         if middle.any():
             hits = word.codes[: nodes.shape[-2]] < 2
@@ -312,26 +317,29 @@ class Model(Varying):
 
     @classmethod
     def restitutions(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Newton's coefficients of the left and of the right wall."""
+        """Return Newton's coefficients of the left and of the right wall."""
         return cls.sides(params, "restitution")
 
     @classmethod
     def bodies(cls, w: Reals, v: Reals, params: np.ndarray) -> tuple[Any, Any]:
-        """Displacements q1 of the cavity and q2 of the absorber from w = q1 - q2 and v = q1 + eps q2; velocities likewise.
+        """Return the displacements q1 of the cavity and q2 of the absorber from w = q1 - q2 and v = q1 + eps q2; velocities likewise.
 
-        Shapes follow `w` and `v`, against which `params` (..., P) is broadcast.
+        Shapes follow `w` and `v`, to which `params` (..., P) is broadcast.
         """
         eps = cls.column(params, "mass_ratio")
         return (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps)
 
     @classmethod
     def relative(cls, cavity: Reals, absorber: Reals, params: np.ndarray) -> tuple[Any, Any]:
-        """w and v from the displacements of cavity and absorber, the inverse of `bodies`."""
+        """Return w and v from the displacements of cavity and absorber: the inverse of `bodies`."""
         return cavity - absorber, cavity + cls.column(params, "mass_ratio") * absorber
 
     @classmethod
     def at_home(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Nodes (l, n); of a motion without impacts with the absorber moved so that the mean of w is the middle between the walls (q1 stays)."""
+        """Return nodes (l, n), centred for a motion without impacts.
+
+        The absorber is shifted so that the mean of w over the nodes is the middle between the walls; q1 does not change.
+        """
         if not len(codes) or np.any(codes < 2) or np.any(codes > 4):
             return nodes
         moved = nodes.copy()
@@ -343,7 +351,7 @@ class Model(Varying):
 
     @classmethod
     def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """mu g cos(slope) times the path slid, from the displacements w between events (m, L); shape (m,)."""
+        """Return mu g cos(slope) times the sliding distance, shape (m,), from displacements w between events (m, L)."""
         left, right = (side[:, None] for side in cls.sides(params, "friction"))
         return (np.where(steps > 0.0, left, right) * np.abs(steps)).sum(axis=1) * cls.weight(params)
 
@@ -352,20 +360,20 @@ class Model(Varying):
         return Word.parse(text, frictionless=self.frictionless(params))
 
     def word_of(self, events: Sequence[str], modes: Sequence[int], params: np.ndarray) -> Word | None:
-        """The word with these events and modes; None if the machine has none such at these parameters."""
+        """Return the word with these events and modes; None if it is impossible at these parameters."""
         if self.frictionless(params) and not {"L", "R"}.issuperset(events):
             return None
         return Word(tuple(events), tuple(modes), shaken(self.frictionless(params)))
 
     # ------------------------------------------------------------------ starts
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        """Nodes to start from in closed form, where there are any."""
+        """Yield nodes of orbits in closed form, if there are any."""
         return iter(())
 
     def random_nodes(
         self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
     ) -> np.ndarray | None:
-        """Nodes at random from which Newton's method may find an orbit; None if that is hopeless."""
+        """Return random nodes as a guess for Newton's method; None if it would practically never converge."""
         if self.moving_cavity:
             return None
         amplitude, omega = (float(self.column(params, name)) for name in (self.driven_by, self.phase_rate))
@@ -380,14 +388,14 @@ class Model(Varying):
     def random_start(
         self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
     ) -> dict[str, float]:
-        """A state at random, as `orbits.simulation.simulate` takes it."""
+        """Return a random state, as `orbits.simulation.simulate` takes it."""
         start = {
             "phase": generator.uniform(0.0, 2.0 * np.pi),
             "w": generator.uniform(-0.95, 0.95),
             "w_rate": generator.uniform(-2.0, 2.0),
         }
         left, right = (float(wall) for wall in self.walls(params))
-        reach = min(max(left, -right), 10.0 * min(left, -right))  # a wall out of reach is no measure
+        reach = min(max(left, -right), 10.0 * min(left, -right))  # a wall far away does not set the scale
         low, high = max(right, -reach), min(left, reach)
         start["w"] = 0.5 * (low + high) + 0.5 * (high - low) * start["w"]
         if self.moving_cavity:

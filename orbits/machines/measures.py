@@ -1,6 +1,6 @@
-"""Measures of orbits: their names, what kind of quantity each is and how it is written on axes; and how parameters are.
+"""Measures of orbits: their names, kinds of quantity and labels on axes; and labels of parameters.
 
-Where a machine has units, a measure is told in words, else in the field's notation.
+Labels of machines with units are in words, others in the field's notation.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from contvines.shared.motions import BAND
 
 
 class Measure(NamedTuple):
-    """What a measure is.
+    """Description of a measure.
 
     Attributes
     ----------
     kind : str
-        Of quantity.
+        Kind of quantity.
     label : str
-        On an axis; empty: its name.
+        Label of an axis; empty: the name.
     words : str
-        The same of a number that has a unit, where it is written otherwise.
+        Label for machines with units, if it differs.
     """
 
     kind: str
@@ -67,7 +67,7 @@ COMMON = {
     "max_abs_w": Measure("length", r"largest $|w|$", "largest relative displacement"),
     **LOADS,
 }
-"""Of all machines."""
+"""Measures of all built-in machines."""
 DRIVEN = {
     "max_abs_q1": Measure(
         "length", r"largest $|q_1|$ in units of $b$", "largest displacement of the oscillator"
@@ -76,11 +76,11 @@ DRIVEN = {
     "v_phase": Measure("angle"),
     **_energies(_WORKS),
 }
-"""Of machines that ride on an oscillator."""
+"""Further measures of machines whose cavity is an oscillator."""
 WITHOUT_IMPACTS = (*LOADS, "impact_loss", "impact_speed", "impact_speed_min")
-"""Measures that are 0 without impacts; others of impacts are not a number there."""
+"""Measures that are 0 without impacts; the other measures of impacts are NaN."""
 MEANS = {f"{name}_mean": name for name in _LOSSES | _WORKS}
-"""Energies per forcing period, and the same per period of the orbit."""
+"""Name of an energy per forcing period -> name of the same energy per period of the orbit."""
 MEASURES = {
     **COMMON,
     **DRIVEN,
@@ -91,9 +91,9 @@ MEASURES = {
     **dict.fromkeys(BAND, Measure("length")),
 }
 KINDS = {name: measure.kind for name, measure in MEASURES.items()}
-"""What kind of quantity each measure is."""
+"""Kind of quantity of each measure."""
 ANGLES = tuple(name for name, kind in KINDS.items() if kind == "angle")
-"""Radians, modulo 2 pi."""
+"""Measures in radians, modulo 2 pi."""
 
 # ------------------------------------------------------------------ labels of axes
 SYMBOLS = {
@@ -110,7 +110,7 @@ SYMBOLS = {
     "forcing": "forcing $G$",
     "damping": r"damping $\lambda$",
 }
-"""Of measures, coordinates and parameters by name, in the field's notation."""
+"""Labels of measures, coordinates and parameters by name, in the field's notation."""
 WORDS = {
     **{name: measure.words for name, measure in MEASURES.items() if measure.words},
     "half_width": "half-width of the cavity (clearance to either side)",
@@ -118,18 +118,18 @@ WORDS = {
     "base_amplitude": "amplitude of the base",
     "force_amplitude": "amplitude of the force",
 }
-"""The same in words, of numbers that have a unit."""
+"""Labels in words, for quantities with a unit."""
 STARTS = {
     **{name: SYMBOLS[name] for name in ("v", "v_rate")},
     "w": "position $w$ of the start",
     "w_rate": "velocity $w'$ of the start",
     "phase": "phase of the start",
 }
-"""Of the coordinates of a start."""
+"""Labels of the coordinates of a start."""
 
 
 def sign(name: str) -> str:
-    """The symbol of a parameter alone, as on axes; its name where it has none."""
+    """Return the symbol of a parameter alone, as on axes; its name if it has none."""
     _, dollar, symbol = SYMBOLS.get(name, "").partition("$")
     return dollar + symbol or name
 
@@ -144,17 +144,18 @@ def loads(
     duration: np.ndarray,
     held: np.ndarray | float | None,
 ) -> dict[str, np.ndarray]:
-    """Measures of the forces at walls by name, (m,), and `impact_loss`, the energy that impacts take.
+    """Return measures of the forces at walls by name, (m,), and `impact_loss`, the energy lost at impacts.
 
     Parameters
     ----------
     speeds, restitution, mass : float array (m, l)
-        Of each impact of m solutions: the speed before it, the wall's restitution, the mass of the relative motion.
+        For each impact of m solutions: the speed before it, the wall's restitution, the mass of the relative motion.
     at, walls : sequence of str
-        The wall that each hits, and all walls, as the names of their impulses end.
+        The wall of each impact, and all walls, as they appear in names of impulses.
     duration : float array (m,)
+        Length of the period.
     held : float array (m,) or float, optional
-        Duration of an impact, whose force is half a sine: impulse = 2 F T/pi.
+        Duration of an impact, with a force of half a sine: impulse = 2 F T/pi.
     """
     impulses, energies = (1.0 + restitution) * mass * speeds, 0.5 * mass * speeds**2
     largest = {wall: impulses[:, [one == wall for one in at]].max(axis=1, initial=0.0) for wall in walls}
@@ -172,7 +173,7 @@ def loads(
 
 
 def way_out(name: str) -> str:
-    """What gives a machine a measure that it has not, as a sentence ends with it; empty where nothing does."""
+    """Return a hint, to end a sentence, how a machine gets a measure that it lacks; empty if there is none."""
     return (
         " (a peak force needs contact_time, the duration of an impact: in [model], of a declared machine among its parameters)"
         if name == "peak_force"

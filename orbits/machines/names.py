@@ -1,4 +1,4 @@
-"""The machines by the names that studies use."""
+"""Names of the machines in studies."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ PLACES = {
 """Module and class of each machine."""
 NAMES = tuple(PLACES)
 NATIVE = ("absorber", "cavity", "coupled")
-"""Machines of the native core, in the order of native/machines.hpp; others compute with their reference."""
+"""Machines of the native core, in the order of native/machines.hpp; others use their reference."""
 STRUCTURE = "structure"
-"""What studies call a machine of matrices (`orbits.machines.structure`)."""
+"""Name in studies of a machine given by matrices (`orbits.machines.structure`)."""
 PAGES = {"coupled_two": "orbits.machines.coupled_two"}
-"""Machines that come with the package, whose flow is integrated; the module holds the machine by its name."""
+"""Declared machines of the package: name of the machine, and the module that holds it under this name."""
 
 
 def model_class(name: str) -> type[Model]:
-    """The machine called `name` in studies.
+    """Return the class of the machine called `name` in studies.
 
     Raises
     ------
     ParameterError
-        If there is none.
+        If there is no machine of this name.
     """
     if name not in PLACES:
         known = (*NAMES, *PAGES)
@@ -45,12 +45,12 @@ def model_class(name: str) -> type[Model]:
 
 
 def page_machine(name: str) -> Varying:
-    """The machine of `PAGES` called `name`."""
+    """Return the machine of `PAGES` called `name`."""
     return getattr(importlib.import_module(PAGES[name]), name)
 
 
 def usual(name: str) -> tuple[Model, dict[str, float]]:
-    """A machine with usual values, and those of the parameters that are given with each orbit."""
+    """Return a machine with usual values, and values of the parameters that belong to each orbit."""
     chosen = model_class(name)
     values = {entry.name: entry.example for entry in chosen.table}
     own = {key: values.pop(key) for key in chosen.field_names() if key in values}

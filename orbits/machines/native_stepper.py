@@ -1,4 +1,4 @@
-"""The contract of :mod:`orbits.machines.stepping` fulfilled by the native core (`native/simulation.hpp`)."""
+"""The stepper of :mod:`orbits.machines.stepping` in the native core (`native/simulation.hpp`)."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from orbits.settings import STEPPING
 
 
 def number(name: str) -> int | None:
-    """The number of a machine in the native core; None if its reference computes."""
+    """Return the number of a machine in the native core; None if its reference is used."""
     return NATIVE.index(name) if native() and name in NATIVE else None
 
 
 def floats(array: np.ndarray) -> np.ndarray:
-    """An array that native code can read: C-contiguous, float64."""
+    """Return an array that native code can read: C-contiguous, float64."""
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
 def bytes_of(array: np.ndarray) -> np.ndarray:
-    """Codes or modes that native code can read."""
+    """Return codes or modes as native code can read them."""
     return np.ascontiguousarray(array, dtype=np.int8)
 
 
 def written(array: np.ndarray) -> int:
-    """Address of an array that native code writes.
+    """Return the address of an array that native code writes.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def written(array: np.ndarray) -> int:
 
 
 class NativeStepper(Stepper):
-    """See the contract; `number`: the machine's in the native core."""
+    """The stepper in the native core; `number` is the machine's number there."""
 
     def __init__(self, name: str, number: int) -> None:
         self._model = model_class(name)
@@ -81,7 +81,7 @@ class NativeStepper(Stepper):
         modes: np.ndarray,
         rows: np.ndarray,
     ) -> tuple[int, int]:
-        """Run from event to event; contract, item 3. Between slices of a long run an interrupt is seen."""
+        """Move from event to event; item 3 of `orbits.machines.stepping`. Interrupts take effect between slices of a long run."""
         params = floats(params)
         until = min(float(until), float(state[TURNS]) + STEPPING.forever)
         count, status, room = 0, PAUSED, len(codes)
@@ -126,7 +126,7 @@ class NativeStepper(Stepper):
 
 @cache
 def stepper(name: str) -> Stepper:
-    """What moves the motions of the machine called `name` on: the native core, or its reference in plain Python."""
+    """Return the stepper of the machine called `name`: in the native core, or its reference in plain Python."""
     machine = number(name)
     if machine is not None:
         return NativeStepper(name, machine)

@@ -1,11 +1,10 @@
-"""A machine's parameters: name, meaning, unit, symbol and limits, in one place, and how its numbers follow the one that varies.
+"""Parameters of a machine: name, meaning, unit, symbol and limits, and how its numbers depend on the varying parameter.
 
-Refusals, studies, tables and axes read them from here; nothing else knows what a parameter may be. A parameter may depend on a condition, a
-temperature for example (`Table`).
+All checks, studies, tables and axes use these definitions. A parameter may depend on a condition, such as a temperature (`Table`).
 
-The numbers that the maps read are products of powers of the named parameters. Of a machine described by its numbers each parameter
-is one of them; a physical quantity may move several: the half-width of the cavity changes the dimensionless gravity and
-forcing together. While one parameter p varies, number j is ``path[0, j] * p**path[1, j]``, or stays where ``path[1, j]`` is 0.
+The numbers in the equations are products of powers of the named parameters. If a machine is given by its numbers, each parameter is one
+of them; a physical quantity may change several: the half-width of the cavity changes the dimensionless gravity and forcing together. As
+one parameter p varies, number j is ``path[0, j] * p**path[1, j]``, or constant if ``path[1, j]`` is 0.
 """
 
 from __future__ import annotations
@@ -17,11 +16,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 LARGEST = 1_000_000.0
-"""Of a number in a study, in the machine's own units, where all numbers are of order one; squares stay far from overflow."""
+"""Largest number in a study, in the machine's own units, in which numbers are of order one; its square is far from overflow."""
 
 
 class ParameterError(ValueError):
-    """A parameter without a sensible value; the sentence names it, its value and a way out."""
+    """An impossible value of a parameter; the message names parameter, value and remedy."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +30,9 @@ class Limits:
     Attributes
     ----------
     low, high : float
-        Its ends; infinite where there is none.
+        Ends of the interval; infinite if there is none.
     open : bool
-        Whether `low` itself is left out.
+        Whether `low` itself is excluded.
     """
 
     low: float = -math.inf
@@ -45,7 +44,7 @@ class Limits:
 
     @property
     def text(self) -> str:
-        """As it follows "a number"."""
+        """The interval in words, to follow "a number"."""
         if self.low == -math.inf and self.high == math.inf:
             return "that is finite"
         if self.high == math.inf:
@@ -56,7 +55,7 @@ class Limits:
 
     @property
     def in_studies(self) -> Limits:
-        """The same for values in studies, which are neither huge nor, where 0 is left out, tiny."""
+        """The same interval for values in studies: without huge values and, if 0 is excluded, without tiny ones."""
         if self.open and self.low == 0.0:
             return Limits(1.0 / LARGEST, min(self.high, LARGEST))
         return Limits(max(self.low, -LARGEST), min(self.high, LARGEST), self.open)
@@ -75,15 +74,15 @@ class Parameter:
     Attributes
     ----------
     name : str
-        As in studies and in Python.
+        Name in studies and in Python.
     meaning : str
-        What it is, in a few words.
+        Meaning in a few words.
     limits : Limits
-        Values that make sense.
+        Possible values.
     symbol : str
-        As in formulas, in TeX without dollars.
+        Symbol in formulas, in TeX without dollars.
     unit : str
-        In which it is counted; "" for a pure number.
+        Unit; "" for a pure number.
     example : float
         A usual value.
     words : mapping
@@ -99,12 +98,12 @@ class Parameter:
     words: Mapping[str, float] = field(default_factory=dict)
 
     def number(self, value: object) -> float:
-        """The number that a value stands for.
+        """Return the number for a value.
 
         Raises
         ------
         ParameterError
-            If it is no finite number within the limits, nor one of the words.
+            If it is neither a finite number within the limits nor one of the words.
         """
         name = self.name
         if isinstance(value, str) and self.words:
@@ -127,7 +126,7 @@ class Parameter:
         return number
 
     def named(self, value: object) -> str | float:
-        """The word for a value where there is one, else the number."""
+        """Return the word for a value if there is one, else the number."""
         number = self.number(value)
         return next((word for word, code in self.words.items() if code == number), number)
 
@@ -144,14 +143,14 @@ FREQUENCY = Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", 
 
 @dataclass(frozen=True)
 class Table:
-    """A parameter over a condition.
+    """A parameter as a function of a condition.
 
     Attributes
     ----------
     parameter, condition : str
-        Names.
+        Their names.
     places, values : tuple of float
-        Of the condition, ascending, and of the parameter.
+        Values of the condition, ascending, and of the parameter.
     """
 
     parameter: str
@@ -167,12 +166,12 @@ class Table:
             )
 
     def __call__(self, condition: float) -> float:
-        """The parameter's value, linear between two rows.
+        """Return the parameter's value, linear between two rows.
 
         Raises
         ------
         ParameterError
-            Outside of the table.
+            If the condition lies outside the table.
         """
         low, high = self.places[0], self.places[-1]
         if not low <= condition <= high:
@@ -184,12 +183,12 @@ class Table:
 
 
 def resolved(tables: Iterable[Table], values: Mapping[str, float]) -> dict[str, float]:
-    """Values with conditions replaced by the parameters that depend on them.
+    """Return values in which conditions are replaced by the parameters that depend on them.
 
     Raises
     ------
     ParameterError
-        If a condition lies outside of a table.
+        If a condition lies outside its table.
     """
     found = dict(values)
     for table in tables:
@@ -200,7 +199,7 @@ def resolved(tables: Iterable[Table], values: Mapping[str, float]) -> dict[str, 
 
 
 def place(params, path, p, out):
-    """The numbers at p, then their derivatives with respect to p, into `out` (2 P,)."""
+    """Write the numbers at p, then their derivatives by p, into `out` (2 P,)."""
     count = params.shape[0]
     for j in range(count):
         power = path[1, j]
@@ -216,7 +215,7 @@ def place(params, path, p, out):
 
 
 def assign(data, other, value):
-    """Give the parameter that varies in `other` a value in `data`, in place.
+    """Set, in `data` and in place, the parameter that varies in `other`.
 
     Parameters
     ----------
@@ -245,19 +244,19 @@ def assign(data, other, value):
 
 
 def products(law: np.ndarray, amounts: np.ndarray) -> np.ndarray:
-    """The numbers (P,) as products of powers of amounts (Q,): `law` (Q + 1, P) has factors, then exponents."""
+    """Return the numbers (P,) as products of powers of amounts (Q,); the rows of `law` (Q + 1, P) are factors, then exponents."""
     return law[0] * np.prod(amounts[:, None] ** law[1:], axis=0)
 
 
 def single(count: int, index: int) -> np.ndarray:
-    """The path (2, count) of a parameter that is the number `index` itself."""
+    """Return the path (2, count) of a parameter that is the number `index` itself."""
     path = np.zeros((2, count))
     path[:, index] = 1.0
     return path
 
 
 def along(path: np.ndarray, params: np.ndarray, p: np.ndarray | float) -> np.ndarray:
-    """The numbers at each p: (P,) for one, (m, P) for an array (m,)."""
+    """Return the numbers at each p: (P,) for one, (m, P) for an array (m,)."""
     value: float | np.ndarray
     if isinstance(p, float) or np.ndim(p) == 0:
         found, value = params.copy(), float(p)

@@ -1,4 +1,4 @@
-"""What every stepper offers: state, event rows, status, and what moves a state on.
+"""The stepper of the built-in machines: layout of states and event rows, status codes, and the functions that move states on.
 
 1. *State*, float64, one vector for all models::
 
@@ -6,13 +6,13 @@
               Psi  w  w'  mode  turns  low  | v  v'
 
    ``Psi`` is the forcing phase reduced to [0, 2 pi) and ``turns`` the number of whole forcing periods, so
-   that no digit of the phase is lost in a long run. ``mode`` is -1, 0 or +1. ``w + low`` is the position:
+   that the phase keeps its accuracy in long runs. ``mode`` is -1, 0 or +1. ``w + low`` is the position:
    ``low`` keeps the digits of ``w`` below roundoff, so that a turn 1e-18 away from a wall stays there.
-   A machine whose cavity moves as prescribed uses the first six entries, one with ``moving_cavity`` all eight.
+   A machine with prescribed cavity motion uses the first six entries, one with ``moving_cavity`` all eight.
    ``mode == 0`` with ``abs(w) == 1`` exactly is *persistent contact*: the absorber rests on the wall and can
    only leave it inwards.
 
-2. ``launch(state, params) -> None`` reduces the phase, sets the mode from ``w'`` (and where ``w' = 0``
+2. ``launch(state, params) -> None`` reduces the phase, sets the mode from ``w'`` (if ``w' = 0``
    from the accelerations) and clears nothing else.
 
 3. ``advance(state, params, until, codes, modes, rows) -> (count, status)``
@@ -25,21 +25,21 @@
        rows[i]   f8     0    1      2  3             4             | 5  6
                         Psi  turns  w  w' before it  w' after it   | v  v'
 
-   HOLD ends a complete chatter: infinitely many impacts have piled up, the absorber now rests on the wall
+   HOLD ends a complete chatter: infinitely many impacts have accumulated, and the absorber rests on the wall
    at ``w`` until the wall stops pushing; the release is a U event. Without friction (a = 0) turns are no
-   events and no rows. Nothing is allocated, nothing is raised; the number of operations is bounded by the
-   number of rows and of forcing periods.
+   events and write no rows. The function neither allocates memory nor raises errors; the number of operations is
+   bounded by the number of rows and of forcing periods.
 
 4. ``sample(states[n, S], params, ahead[n], out[n, 4])`` writes ``w, w', v, v'`` at the phase ``ahead[i]``
-   (radians, >= 0) after ``states[i]``, inside the mode of ``states[i]`` (closed form, no events).
+   (radians, >= 0) after ``states[i]``, in the mode of ``states[i]`` (closed form, no events).
 
-5. ``works(states[n, S], params, ahead[n], out[n, 3])`` writes the work done inside that piece of a segment by
+5. ``works(states[n, S], params, ahead[n], out[n, 3])`` writes the work done in the same piece of a flight by
    the excitation (positive = into the system), the damper and the friction (positive = dissipated);
-   ``energies(states[n, S], params, out[n])`` writes the energy that these works change. What an impact
-   takes is the difference of the energies before and after it.
+   ``energies(states[n, S], params, out[n])`` writes the energy that these works change. The loss at an impact
+   is the difference of the energies before and after it.
 
-6. ``shapes(states[n, S], params, ahead[n], out[n, 4])`` writes the largest abs(q1) inside that piece of a segment, and the integrals of
-   v sin Psi, v cos Psi and q1 sin Psi over the phase; of machines with ``moving_cavity``.
+6. ``shapes(states[n, S], params, ahead[n], out[n, 4])`` writes the largest abs(q1) in the same piece of a flight, and the integrals of
+   v sin Psi, v cos Psi and q1 sin Psi over the phase; only for machines with ``moving_cavity``.
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ from typing import Any
 import numpy as np
 
 HOLD = 5
-"""Event code of the simulator alone: complete chatter has ended in persistent contact."""
+"""Event code that only the simulator uses: complete chatter has ended in persistent contact."""
 
 EVENTS_FULL, TIME_REACHED, REST, FAILED = 0, 1, 2, 3
 PAUSED = 4
-"""Status of the native core alone: a slice of a long run is over, nothing has happened."""
+"""Status that only the native core uses: a slice of a long run is over without further meaning."""
 STATUS: dict[int, str] = {
     EVENTS_FULL: "the requested number of events was reached",
     TIME_REACHED: "the requested time was reached",
@@ -67,16 +67,16 @@ TWO_PI = 2.0 * np.pi
 
 
 class Stepper(ABC):
-    """What moves the motions of one machine on; see the module's docstring.
+    """Moves the motions of one machine on; see the module's docstring.
 
     Attributes
     ----------
     name : str
     moving_cavity : bool
     places : tuple of int
-        Where a state has the coordinates of the motion at a definite phase.
+        Indices in a state of the coordinates of the motion.
     coordinates : tuple of str
-        Names of these: position and velocity in the cavity, then those of the centre of mass.
+        Their names: position and velocity in the cavity, then those of the centre of mass.
     node : int
         Unknowns per event: the phase, and all coordinates but one, which the event fixes.
     state, row : int
@@ -92,11 +92,11 @@ class Stepper(ABC):
 
     @abstractmethod
     def walls(self, params: np.ndarray) -> tuple[Any, Any]:
-        """w at the left and at the right wall."""
+        """Return w at the left and at the right wall."""
 
     @abstractmethod
     def launch(self, state: np.ndarray, params: np.ndarray) -> None:
-        """Reduce the phase and set the mode of a start; contract, item 2."""
+        """Reduce the phase and set the mode of a start; item 2 of the module."""
 
     @abstractmethod
     def advance(
@@ -108,29 +108,29 @@ class Stepper(ABC):
         modes: np.ndarray,
         rows: np.ndarray,
     ) -> tuple[int, int]:
-        """Run from event to event; contract, item 3."""
+        """Move from event to event; item 3 of the module."""
 
     @abstractmethod
     def sample(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
-        """w, w', v, v' at given phases after given states; contract, item 4."""
+        """Write w, w', v, v' at given phases after given states; item 4 of the module."""
 
     @abstractmethod
     def works(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
-        """Works inside pieces of segments; contract, item 5."""
+        """Write works in pieces of flights; item 5 of the module."""
 
     @abstractmethod
     def energies(self, states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
-        """Energies of states; contract, item 5."""
+        """Write energies of states; item 5 of the module."""
 
     @abstractmethod
     def shapes(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
-        """Largest displacement and harmonics inside pieces of segments; contract, item 6."""
+        """Write largest displacement and harmonics in pieces of flights; item 6 of the module."""
 
     # ------------------------------------------------------------------ nodes, which continuation solves for
     def states_of(
         self, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray
     ) -> np.ndarray:
-        """The states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
+        """Return the states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
         left, right = self.walls(params)
         states = np.zeros((len(nodes), self.state))
         turns = np.floor(nodes[:, 0] / TWO_PI)
@@ -144,11 +144,11 @@ class Stepper(ABC):
         return states
 
     def state_of(self, params: np.ndarray, code: int, mode: int, node: np.ndarray) -> np.ndarray:
-        """The same after one event, shape (S,)."""
+        """Return the state just after one event, shape (S,)."""
         return self.states_of(params, np.array([code]), np.array([mode]), node[None])[0]
 
     def event_states(self, modes: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """States after events, shape (n, S), from their rows."""
+        """Return the states after events, shape (n, S), from their rows."""
         states = np.zeros((len(rows), self.state))
         states[:, [PSI, TURNS, W, RATE]] = rows[:, [0, 1, 2, 4]]
         states[:, MODE], states[:, V:] = modes, rows[:, 5:]
@@ -157,7 +157,7 @@ class Stepper(ABC):
     def nodes_of(
         self, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
     ) -> np.ndarray:
-        """Nodes, shape (n, NODE), of events from their rows; phases are counted through (2 pi per turn)."""
+        """Return the nodes, shape (n, NODE), of events from their rows; phases are counted through (2 pi per turn)."""
         states = self.event_states(modes, rows)
         second = np.where(codes < 2, self._cavity_speed(params, states) - states[:, RATE], states[:, W])
         return np.column_stack([states[:, PSI] + TWO_PI * states[:, TURNS], second, rows[:, 5:]])
@@ -169,5 +169,5 @@ class Stepper(ABC):
 
 
 def buffers(engine: Stepper, size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Empty event arrays for `size` events."""
+    """Return empty event arrays for `size` events."""
     return np.empty(size, np.int8), np.empty(size, np.int8), np.empty((size, engine.row))

@@ -1,7 +1,7 @@
-"""Which of a machine's numbers may vary, how the others follow, and in which units they are given.
+"""The parameters of a machine that can vary, their units, and how the parameter vector depends on them.
 
-A machine whose numbers are all its own varies one of them at a time; a machine of physical quantities
-(`orbits.machines.physical.machine`) varies a direction in them.
+A machine given by dimensionless numbers varies one of them at a time; a machine given by physical quantities
+(`orbits.machines.physical.machine`) may change several numbers with one quantity.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 
 
 class Varying:
-    """The part of a machine (`orbits.machines.base.Model`) that knows what may vary."""
+    """Common base of built-in and declared machines: parameters and units, and the methods that find motions."""
 
     table: ClassVar[tuple[Parameter, ...]] = ()
     younger: ClassVar[tuple[str, ...]] = ()
-    """Parameters that older files do not have: their machines have the defaults."""
+    """Parameters that older files lack; machines from these files have the defaults."""
 
     in_cavity: ClassVar[bool] = False
-    """Whether it is an absorber that moves between two walls of a cavity, with friction on its floor."""
+    """Whether the machine is an absorber between two walls of a cavity, with friction on its floor."""
 
     contact_time: float | None = None
-    """Duration of an impact, in 1/omega_0, in seconds where there are units; None where no peak force is asked for."""
+    """Duration of an impact, in 1/omega_0 (with units: in seconds), for the peak force; None: no peak force."""
 
     if TYPE_CHECKING:
         name: str
@@ -45,7 +45,7 @@ class Varying:
         node_names: tuple[str, ...]
         patience: int
 
-        # what both kinds of machines answer: `orbits.machines.base`, `orbits.machines.page.machine`
+        # implemented by both kinds of machines, in `orbits.machines.base` and `orbits.machines.page.machine`
         def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool: ...
         def phase_speed(self, params: np.ndarray) -> Reals: ...
         def check_value(self, name: str, value: float) -> None: ...
@@ -64,12 +64,12 @@ class Varying:
         def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray: ...
 
     def completed(self, params: np.ndarray) -> np.ndarray:
-        """A parameter vector of an older file with what was added since.
+        """Return a parameter vector from an older file, completed with parameters added since.
 
         Raises
         ------
         ValueError
-            If it has not as many numbers as any version of the machine.
+            If its length is that of no version of the machine.
         """
         names = self.parameter_names
         if params.size == len(names) - len(self.younger):
@@ -80,24 +80,24 @@ class Varying:
         return params
 
     def named(self, params: np.ndarray) -> dict[str, float]:
-        """The numbers of a parameter vector by name."""
+        """Return the entries of a parameter vector by name."""
         return dict(zip(self.parameter_names, params.tolist(), strict=True))
 
     @property
     def amount_names(self) -> tuple[str, ...]:
-        """Names of all parameters that may vary, in the order of `amounts`; here the numbers themselves."""
+        """Names of all parameters that can vary, in the order of `amounts`; here the numbers themselves."""
         return self.parameter_names
 
     def amounts(self, params: np.ndarray) -> np.ndarray:
-        """Values of all parameters that may vary, shape (Q,)."""
+        """Return the values of all parameters that can vary, shape (Q,)."""
         return params
 
     def amount(self, name: str, params: np.ndarray) -> float:
-        """The value of one of them."""
+        """Return the value of one parameter."""
         return float(self.amounts(params)[self.place_of(name)])
 
     def path(self, name: str, params: np.ndarray) -> np.ndarray:
-        """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.parameters`."""
+        """Return how the numbers depend on one parameter while the others stay as in `params`, shape (2, P); see `orbits.machines.parameters`."""
         place, law = self.place_of(name), self.law
         if not len(law):
             return single(params.size, place)
@@ -107,11 +107,11 @@ class Varying:
 
     @property
     def law(self) -> np.ndarray:
-        """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
+        """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows if amounts and numbers are the same."""
         return np.zeros((0, len(self.parameter_names)))
 
     def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """`vector` with the parameter that may vary called `name` at `value`.
+        """Return `vector` with the parameter `name` at `value`.
 
         Raises
         ------
@@ -122,12 +122,12 @@ class Varying:
 
     @property
     def units(self) -> dict[str, str]:
-        """Units of parameters and measures by name; none here, where all are numbers."""
+        """Units of parameters and measures by name; none for dimensionless machines."""
         return {}
 
     @property
     def notation(self) -> dict[str, str]:
-        """Labels of axes by name of parameter or measure: in symbols, in words for numbers that have a unit."""
+        """Labels of axes by name of parameter or measure: in symbols, or in words for quantities with a unit."""
         found = {**SYMBOLS, **{name: WORDS[name] for name in self.units if name in WORDS}}
         if self.contact_time is not None:
             shape = f"half sine of {self.contact_time:g} {self.units.get('contact_time', '')}".rstrip()
@@ -135,52 +135,52 @@ class Varying:
         return found
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
-        """A parameter vector by name, with the units of what is shown, ready for JSON."""
+        """Return the parameters by name and the units, ready for JSON."""
         return {"parameters": self.named(params), **({"units": self.units} if self.units else {})}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
-        """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
+        """Return one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") in the shown unit."""
         return 1.0
 
     def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
-        """What one of these coordinates is in the unit that is shown, and that unit; of those that have one."""
+        """Return, for coordinates that have a unit, the size of one in the shown unit, and this unit."""
         return {name: (1.0, self.units[name]) for name in names if self.units.get(name)}
 
     def middle(self, params: np.ndarray) -> Reals:
-        """The position about which mirror images are taken."""
+        """Return the position about which mirror images are taken."""
         return 0.0
 
     def image(self, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Nodes (..., L, n) of the first events of a word mirrored, at the same phases or with the same durations."""
+        """Return the mirror images of nodes (..., L, n) of the first events of a word, with phases or durations unchanged."""
         image = -nodes
         image[..., 0] = nodes[..., 0]
         return image
 
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
-        """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.
+        """Return a length and a rate of the machine's own size; orbits are solved in these units, so that results do not depend on the user's.
 
-        They are exactly as large as the machine: whatever is compared with a number is then the same in every unit, but for
-        rounding. 1 where the machine's equations have no unit to choose.
+        They scale exactly with the machine, so that comparisons with fixed tolerances give the same result in every unit, apart from roundoff.
+        1 if the machine's equations offer no choice of units.
         """
         return 1.0, 1.0
 
     def sizes(self, params: np.ndarray) -> np.ndarray | None:
-        """Typical sizes of the entries of a node, shape (n,), where they are not of order 1 in the units in which orbits are solved for."""
+        """Return typical sizes of a node's entries, shape (n,), if they are not of order 1 in the units of solving; else None."""
         return None
 
     def factors(self, units: tuple[float, float]) -> np.ndarray:
-        """What one dimensionless number of each of the machine's own parameters is, (P,), in units of a length and a rate."""
+        """Return one unit of each dimensionless parameter, (P,), when length and rate are counted in `units`."""
         length, rate = units
         sizes = {"b": length, "omega_0": rate, "b omega_0^2": length * rate * rate}
         return np.array([sizes.get(parameter.unit, 1.0) for parameter in self.table])
 
     def place_of(self, name: str) -> int:
-        """Place of a parameter among `amount_names`.
+        """Return the index of a parameter in `amount_names`.
 
         Raises
         ------
         ParameterError
-            If there is none of this name.
+            If the name is unknown.
         """
         if name not in self.amount_names:
             raise ParameterError(
@@ -199,24 +199,24 @@ class Varying:
         events: int | None = None,
         **parameters: float,
     ):
-        """Simulate from event to event, without the equations that continuation solves.
+        """Simulate from event to event, independently of the equations that continuation solves.
 
         Parameters
         ----------
         start : mapping or ndarray, optional
-            States by name, in the machine's units: `phase` (radians), `w`, `w_rate` and, where the cavity moves, `v`, `v_rate` (or
-            `q1`, `q2`, `q1_rate`, `q2_rate`); of a declared machine its own states, and `phase` if it is forced. What is not given is 0.
+            States by name, in the machine's units: `phase` (radians), `w`, `w_rate` and, for an oscillating cavity, `v`, `v_rate` (or
+            `q1`, `q2`, `q1_rate`, `q2_rate`); of a declared machine its own states, and `phase` if it is forced. Missing entries are 0.
         periods, time : float, optional
             Length of the run, in forcing periods or in the machine's time.
         events : int, optional
-            Stop after so many events; by default at most a million.
+            Largest number of events; by default a million.
         **parameters
-            Parameters that are no fields of the machine (`amplitude`), or that replace them.
+            Parameters that are no fields of the machine (`amplitude`), or that replace its fields.
 
         Returns
         -------
         Trajectory
-            Phases of the events in `clocks`, their letters in `letters`; `reason` says why the run ended.
+            Phases of the events in `clocks`, their letters in `letters`; `reason` is the reason for the end of the run.
 
         Raises
         ------
@@ -238,29 +238,29 @@ class Varying:
         observed: bool = True,
         **parameters: float,
     ):
-        """The attractor that a start leads to: simulated until it recurs, then solved for.
+        """Find the attractor to which a start leads: simulate until the motion recurs, then solve for it.
 
         Parameters
         ----------
         start : mapping or ndarray, optional
             As for `simulate`; by default rest.
         transient : float, optional
-            Forcing periods left out first, 300 (of a self-excited machine events, 100).
+            Length left out first: 300 forcing periods (self-excited: 100 events).
         max_period : int
-            Longest recurrence that is looked for, in forcing periods (of a self-excited machine 25 times as many events).
+            Longest recurrence to search for, in forcing periods (self-excited: 25 times as many events).
         tolerance : float, optional
-            Largest distance of two points, relative to 1 + their size, that counts as a return; 1e-6, of a declared machine 1e-5.
+            Largest distance of two points, relative to 1 + their size, that counts as a return; 1e-6, for a declared machine 1e-5.
         patience : int, optional
-            How often the transient is prolonged when nothing recurs.
+            How often the transient is prolonged if nothing recurs.
         observed : bool
             Whether a motion that does not recur is followed until its statistics settle.
         **parameters
-            Parameters that are no fields of the machine (`amplitude`), or that replace them.
+            Parameters that are no fields of the machine (`amplitude`), or that replace its fields.
 
         Returns
         -------
         Attractor
-            `kind` says what it is, `orbit` is the solved orbit (None where no word describes the motion); `contvines.diagram` begins with it.
+            `kind` is its kind, `orbit` the solved orbit (None if no word describes the motion); `contvines.diagram` can begin with it.
 
         Raises
         ------
@@ -281,18 +281,18 @@ class Varying:
         )
 
     def attractors(self, count: int, seed: int = 0, size: float = 1.0, **options: float | None):
-        """The different attractors that random starts lead to, in the order in which they are met; mirror images count once.
+        """Find the different attractors of random starts, in the order in which they are found; mirror images count once.
 
         Parameters
         ----------
         count : int
             Number of starts.
         seed : int
-            Seed of their generator.
+            Seed of the random generator.
         size : float
             Of a declared machine: states are drawn within +-`size`.
         **options
-            As for `attractor`, parameters of the machine included.
+            As for `attractor`, including parameters of the machine.
 
         Returns
         -------
@@ -308,14 +308,14 @@ class Varying:
         return different_attractors(self, count, seed, size, **options)
 
     def population(self, over: str | None = None, **parameters: float):
-        """Many starts of the machine, for `contvines.atlas`, `basins` and `robustness`.
+        """Return many starts of the machine, for `contvines.atlas`, `basins` and `robustness`.
 
         Parameters
         ----------
         over : str, optional
-            The parameter that varies; by default `default_parameter`.
+            The varying parameter; by default `default_parameter`.
         **parameters
-            Parameters that are no fields of the machine, or that replace them.
+            Parameters that are no fields of the machine, or that replace its fields.
 
         Returns
         -------
@@ -324,7 +324,7 @@ class Varying:
         Raises
         ------
         SimulationError
-            If the machine has no such parameter.
+            If the machine has no parameter called `over`.
         """
         from orbits.population import Population
 
@@ -346,10 +346,10 @@ class Varying:
         periods : int
             Forcing periods after which the orbit closes, 1 or more; of a self-excited machine 1.
         guess : array_like, shape (L, n), optional
-            Nodes for Newton's method, one row per event (slips included): phase, then what `node_names` lists. Without it closed forms are
-            tried, then simulation from many starts, then random nodes.
+            Nodes for Newton's method, one row per event (slips included): the phase, then the entries of `node_names`. Without a guess closed
+            forms are tried, then simulation from many starts, then random nodes.
         **parameters
-            Parameters that are no fields of the machine (`amplitude`), or that replace them.
+            Parameters that are no fields of the machine (`amplitude`), or that replace its fields.
 
         Returns
         -------
@@ -358,7 +358,7 @@ class Varying:
         Raises
         ------
         orbits.starts.find.StartError
-            If no orbit with this word is found; the message says what was tried and which motion the simulator finds.
+            If no orbit with this word is found; the message lists the attempts and the motion that the simulator finds.
         ParameterError, WordError
             If a parameter or the word is impossible.
         """
