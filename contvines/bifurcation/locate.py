@@ -38,6 +38,17 @@ class Segment:
     turns : bool
         This is a part of a segment on which a fold has been found. A change of sign of the parameter's component of the tangent then counts as a fold
         however small the component is, so that all parts together have as many folds.
+
+    Attributes
+    ----------
+    za, zb : ndarray, shape (N + 1,)
+        The ends as (u, p); za is on the mesh of b, if the mesh was adapted between.
+    length : float
+        Length of the chord in the metric.
+    direction, border : ndarray, shape (N + 1,)
+        Unit vector along the chord, and the same times the weights of the metric.
+    way : Way
+        The chord as the loop takes it.
     """
 
     def __init__(self, engine: Engine, a: Solved, b: Solved, turns: bool = False) -> None:

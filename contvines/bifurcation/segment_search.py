@@ -57,6 +57,17 @@ class SegmentSearch:
         User functions by name; see :func:`contvines.bifurcation.kind.own_tests`.
     stops : iterable of str
         Names of the user functions at whose zeros a branch ends.
+
+    Attributes
+    ----------
+    symmetries : list of SymmetryTest
+        Tests for the problem's symmetries.
+    own : list of Own
+        User-defined tests.
+    deepest : int
+        Largest number of times that a segment is halved.
+    parts : int
+        Number of parts of segments searched so far along the current branch; the tracer sets it to 0 at the start.
     """
 
     def __init__(
@@ -72,7 +83,7 @@ class SegmentSearch:
         self.deepest = 1 if engine.adaptive else engine.settings.halvings
         scale = None if engine.plain else engine.scale[:-1]
         self.symmetries = [SymmetryTest(s, engine.n, engine.shift, scale) for s in engine.problem.symmetries]
-        self.parts = 0  # number of parts of segments searched so far along the current branch
+        self.parts = 0
         self.own = own_tests(engine, kinds, functions or {}, tuple(stops), BY_NAME["user"])
 
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:

@@ -72,6 +72,37 @@ class Engine:
     within : (float, float)
         Interval of the parameter; its length is the unit of the parameter in the metric.
     settings : Settings
+
+    Attributes
+    ----------
+    n, m : int
+        Numbers of unknowns and of multipliers.
+    row_size : int
+        Length of a row: 2 m plus the number of margins.
+    detection : {"map", "flow", "real", "none"}
+        Kind of spectrum used for detection; see :data:`contvines.continuation.layout.KINDS`.
+    compiled : bool
+        Whether the loop runs in the native core.
+    scale, weights : ndarray, shape (N + 1,)
+        Typical sizes of unknowns and parameter, and their weights in the metric.
+    noise : float
+        Noise of the equations; 0 if there is only rounding.
+    plain : bool
+        Whether all unknowns have scale 1.
+    shift : ndarray, shape (N,), or None
+        Change of the unknowns by a shift of one period; None if zero.
+    rate : float
+        Unit of raw eigenvalues; 1 for multipliers.
+    row_sizes : ndarray, shape (N,)
+        Typical sizes of the equations.
+    scaled, exchanges : bool
+        Whether the problem has scales; whether also two multipliers that cross in opposite directions are sought
+        (:func:`contvines.bifurcation.scan.balance`).
+    many, signed : bool
+        Whether eigenvalues are computed only near branch points; whether the sign of det F_u is known. See
+        :class:`contvines.problems.abilities.Nearing`.
+    adaptive, moving : Problem or None
+        The problem, if its mesh is adapted along the branch; if its mesh moves with the solution.
     """
 
     def __init__(self, problem: Problem, within: tuple[float, float], settings: Settings) -> None:
@@ -88,15 +119,12 @@ class Engine:
         self.detection = problem.detection or problem.spectrum
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem.scale_within(self.within), float(problem.noise)
-        self.plain = bool((self.scale[:-1] == 1.0).all())  # whether all unknowns have scale 1
+        self.plain = bool((self.scale[:-1] == 1.0).all())
         shift = np.asarray(0.0 if problem.period_shift is None else problem.period_shift, dtype=float)
-        self.shift = shift if shift.any() else None  # change of the unknowns by a period; None if zero
+        self.shift = shift if shift.any() else None
         scales = problem.scales
-        self.rate = (
-            1.0 if scales is None or self.detection != "flow" else float(scales.rate)
-        )  # unit of raw eigenvalues
+        self.rate = 1.0 if scales is None or self.detection != "flow" else float(scales.rate)
         self.row_sizes = np.ones(n) if scales is None else scales.rows
-        # contents of rows: with many unknowns (`many`) eigenvalues are computed only where needed; `signed`: the determinant's sign is known
         self.scaled = scales is not None
         self.exchanges = self.scaled and self.detection != "none"
         nearing = problem if isinstance(problem, Nearing) else None

@@ -133,7 +133,16 @@ def turns_at(engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
 
 
 class Known:
-    """A known branch with its engine; the keys of its solutions are computed at first use."""
+    """A known branch in the register; the keys of its solutions are computed at first use.
+
+    Parameters
+    ----------
+    branch : Branch
+    engine : Engine
+        Engine of the branch's problem.
+    special : collection of int
+        Indices of its special points.
+    """
 
     def __init__(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
         self.branch, self.engine, self.special = branch, engine, special
