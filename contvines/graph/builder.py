@@ -1,4 +1,9 @@
-"""Build an automatic diagram, branch by branch. The order is deterministic, so that a repeated run with a journal finds all recorded results."""
+"""Build an automatic diagram, branch by branch. The order is deterministic, so that a repeated run with a journal finds all recorded results.
+
+For each pending branch of the run's queue: `new_branch` solves for its first point and compares it with known branches, `followed` traces it in both
+directions, :func:`~contvines.graph.label_special_points.mark` labels its special points, and :func:`~contvines.graph.schedule_branches.leave` queues
+the branches that leave them, :func:`~contvines.graph.match_borders.cross` those beyond borders.
+"""
 
 from __future__ import annotations
 
