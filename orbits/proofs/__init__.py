@@ -1,6 +1,6 @@
-"""Proofs: orbits that certainly exist, in ball arithmetic (python-flint), and certificates that anybody can check.
+"""Proofs of orbits and special points in ball arithmetic (python-flint), and certificates that a second program checks.
 
-`Orbit.prove` and `OrbitProblem.prove` end here. What is proved and what is assumed: `docs/proofs.md`.
+`Orbit.prove` and `OrbitProblem.prove` use this sub-package. `docs/proofs.md` lists the statements that are proved and the assumptions.
 """
 
 from orbits.proofs.obstacles import Obstacle, ProofError

@@ -1,7 +1,7 @@
-"""Admissibility: every inequality that a real machine needs, on the whole of every flight, or one of them proved broken.
+"""Admissibility: prove all inequalities of a real orbit on the whole of every flight, or prove that one of them is violated.
 
 On a flight, f > 0 is proved by bisection with mean value forms. At an end where f vanishes exactly (the relative velocity
-at a turn, the distance at an impact) a derivative of known sign takes its place: f(0) = 0 and f' > 0 on [0, b] prove f > 0 on (0, b].
+at a turn, the distance at an impact) the sign of a derivative is used instead: f(0) = 0 and f' > 0 on [0, b] prove f > 0 on (0, b].
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from orbits.proofs.elimination import Nodes
 
 Rates = tuple["arb", "arb", "arb", Any]
-"""A function and its first three rates in time, at an instant or over an interval."""
+"""A function and its first three derivatives with respect to time, at an instant or over an interval."""
 
-EVALUATIONS = 6000
+EVALUATIONS = 6000  # most subintervals of one flight that are examined for one inequality
 
 
 @dataclass(frozen=True)
 class Zero:
-    """What vanishes exactly at a border: the margin `name` of event (or flight) `event`, and where inside the flight."""
+    """The margin that vanishes exactly at a border: its name, its event (or flight), the phase inside the flight if it vanishes there, and the side."""
 
     name: str
     event: int
@@ -41,9 +41,10 @@ NOTHING = Zero("", -1)
 
 @dataclass(frozen=True)
 class Condition:
-    """An inequality f > 0 on the open interval of a flight (or, without `function`, a number that must be positive).
+    """An inequality f > 0 on the open interval of a flight (or, without `function`, a number `value` that must be positive).
 
-    `pace` is the time per radian of the phase; `start` and `end` count the rates of f, f itself first, that vanish exactly there; `touch` is a phase inside where f and f' do.
+    `pace` is the time per radian of the phase. `start` and `end` count how many of f, f', f'' vanish exactly at the start and end of the flight;
+    `touch` is a phase inside the flight at which f and f' vanish exactly.
     """
 
     name: str
@@ -60,27 +61,30 @@ class Condition:
 
 @dataclass(frozen=True)
 class Reality:
-    """Whether the orbit is real: True (all proved), False (`broken` is proved broken), None (`open` remains)."""
+    """Verdict on whether an orbit is real: True (all conditions are proved), False (`broken` is proved to be violated), None (those in `open` are undecided)."""
 
     real: bool | None
     broken: Condition | None = None
     open: tuple[Condition, ...] = ()
 
     def obstacles(self) -> list[Obstacle]:
-        """What could not be decided."""
+        """Return an `Obstacle` for each undecided condition."""
         if self.real is not None:
             return []
         return [Obstacle(Step.ADMISSIBILITY, Remedy.BORDER, c.event, c.name) for c in self.open]
 
 
 def examine(motif: Motif, p: Mapping[str, arb], nodes: Nodes, zero: Zero = NOTHING) -> Reality:
-    """Decide every condition for all solutions with nodes in these balls.
+    """Decide whether all solutions with nodes in these balls are real.
 
     Parameters
     ----------
-    motif, p : the word, and the parameters as balls.
-    nodes : the solution's balls.
-    zero : at a border, the margin that is known to vanish and not to be judged.
+    motif : Motif
+    p : dict of str to arb
+        Parameters.
+    nodes : list (l) of lists (n) of arb
+    zero : Zero
+        At a border, the margin that vanishes exactly, which is not examined.
     """
     if not well_formed(motif):
         return Reality(False, Condition("word", 0))
@@ -95,7 +99,7 @@ def examine(motif: Motif, p: Mapping[str, arb], nodes: Nodes, zero: Zero = NOTHI
 
 
 def well_formed(motif: Motif) -> bool:
-    """Whether the modes fit the events."""
+    """Whether each event is possible between the modes before and after it."""
     if motif.frictionless:
         return all(letter in WALLS for letter in motif.events)
     for i, letter in enumerate(motif.events):
@@ -113,7 +117,7 @@ def well_formed(motif: Motif) -> bool:
 
 
 def conditions(motif: Motif, p: Mapping[str, arb], nodes: Nodes, zero: Zero = NOTHING) -> Iterator[Condition]:
-    """All inequalities of the orbit, the one that vanishes at a border left out or marked."""
+    """Yield all inequalities of a real orbit; the margin that vanishes at a border is omitted, or marked by `start`, `end` or `touch`."""
     flights = motif.flights(p)
     for i in range(len(motif)):
         following = motif.after(i, nodes, p)
@@ -123,23 +127,24 @@ def conditions(motif: Motif, p: Mapping[str, arb], nodes: Nodes, zero: Zero = NO
             if zero.event != i or not _vanishes(condition, zero):
                 yield condition
         yield Condition("duration", i, phases[1] - phases[0])
-        if zero.event == i and zero.phase is not None:  # else it would be no border of this flight
+        if zero.event == i and zero.phase is not None:  # the phase must lie inside this flight
             yield Condition("touch", i, zero.phase - phases[0])
             yield Condition("touch", i, phases[1] - zero.phase)
         yield from _in_flight(motif, i, flight, phases, flights, zero)
 
 
 def _vanishes(condition: Condition, zero: Zero) -> bool:
-    """Whether a condition at the border's event is the one that vanishes."""
+    """Whether a condition at the event of a border is the vanishing margin."""
     return condition.name == zero.name and (zero.name not in ("wall", "stick") or condition.side == zero.side)
 
 
 def _at_event(
     motif: Motif, i: int, here: Motion, node: Sequence[arb], machine: Flights
 ) -> Iterator[Condition]:
+    """Yield the inequalities at event i."""
     letter = motif.events[i]
     if letter in WALLS:
-        # w'- = -w'+/r: approaching before is leaving after
+        # w'- = -w'+/r: the absorber approached the wall before if it leaves it after
         yield Condition("approach", i, -WALLS[letter] * here.w1)
         return
     for side in (1, -1):
@@ -157,6 +162,7 @@ def _at_event(
 def _in_flight(
     motif: Motif, i: int, flight: Flight, phases: tuple[arb, arb], machine: Flights, zero: Zero
 ) -> Iterator[Condition]:
+    """Yield the inequalities inside flight i: distance to the walls, friction margin while sticking, or direction of sliding."""
     pace = 1 / machine.omega
     letter, mode = motif.events[i], motif.modes[i]
     arrival, after = motif.arrival(i)
@@ -204,7 +210,7 @@ def _in_flight(
 
 
 def _decide(condition: Condition) -> bool | None:
-    """True: proved; False: proved broken somewhere; None: neither."""
+    """Return True if the condition is proved, False if it is proved to be violated somewhere, None if neither."""
     if condition.function is None:
         value = condition.value
         assert value is not None
@@ -213,6 +219,7 @@ def _decide(condition: Condition) -> bool | None:
 
 
 def _positive(c: Condition) -> bool | None:
+    """Decide f > 0 on a flight by bisection."""
     assert c.function is not None and c.phases is not None
     arb = library().arb
     first, span = c.phases[0], c.phases[1] - c.phases[0]
@@ -246,6 +253,7 @@ def _positive(c: Condition) -> bool | None:
 
 
 def _holds(rates: Rates, value: arb, at: arb, over: arb, c: Condition, low: arb, high: arb) -> bool:
+    """Whether f > 0 is proved on a subinterval: by its range, by the mean value form, or beside an end by a derivative."""
     if rates[0] > 0 or value + rates[1] * (over - at) * c.pace > 0:
         return True
     if low == 0 and c.start and rates[c.start] is not None and rates[c.start] > 0:

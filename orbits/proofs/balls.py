@@ -1,4 +1,4 @@
-"""Balls: real numbers with a proved error bound, and their decimal texts (python-flint's `arb`)."""
+"""Balls (python-flint's `arb`): real numbers with a rigorous error bound, and conversion to and from decimal text."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
     from flint import arb, arb_mat
 
-#: a parameter as a proof takes it: a float (its shortest decimal is meant), an exact decimal as text, or middle and radius
+#: accepted forms of a parameter: a float (stands for its shortest decimal), an exact decimal as text, or (middle, radius)
 Given = float | int | str | tuple[str, str]
 
 
 def library() -> ModuleType:
-    """The module `flint`.
+    """Import and return the module `flint`.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def library() -> ModuleType:
 
 @contextmanager
 def precision(bits: int) -> Iterator[None]:
-    """All ball arithmetic inside the block carries `bits` bits."""
+    """Context manager: use `bits` bits for all ball arithmetic inside the block."""
     context = library().ctx
     before = context.prec
     context.prec = bits
@@ -49,14 +49,14 @@ def precision(bits: int) -> Iterator[None]:
 
 
 def decimal(value: Given) -> str | tuple[str, str]:
-    """The exact decimal meant by a given value; a ball stays middle and radius.
+    """Return the exact decimal that a given value stands for; a ball stays (middle, radius).
 
-    A float stands for the shortest decimal that reads as this float: what a study's text says.
+    A float stands for the shortest decimal that is read as this float, which is the text of a study.
 
     Raises
     ------
     ProofError
-        If it is no finite number.
+        If the value is not a finite number.
     """
     if isinstance(value, tuple):
         middle, radius = (str(part) for part in value)
@@ -80,29 +80,29 @@ def _finite(text: str) -> Decimal | None:
 
 
 def ball(value: Given) -> arb:
-    """The ball that certainly holds a given value, at the precision in force."""
+    """Return a ball that certainly contains a given value, at the current precision."""
     arb = library().arb
     text = decimal(value)
     return arb(*text) if isinstance(text, tuple) else arb(text)
 
 
 def as_balls(nodes: Iterable[Iterable[float]]) -> list[list[arb]]:
-    """Rows of floats as balls."""
+    """Convert rows of floats to balls."""
     return [[ball(float(value)) for value in node] for node in nodes]
 
 
 def diagonal(size: int, value: arb | int = 1) -> arb_mat:
-    """The identity times a number."""
+    """Return the identity matrix times a number."""
     return library().arb_mat(size, size, [value * (i == j) for i in range(size) for j in range(size)])
 
 
 def interval(low: arb, high: arb) -> arb:
-    """The ball from the smallest value of one ball to the largest of another."""
+    """Return a ball that contains both balls."""
     return low.union(high)
 
 
 def texts(value: arb, digits: int = 40) -> list[str]:
-    """Middle and radius of a ball as decimals; the decimal ball holds the given one."""
+    """Return middle and radius of a ball as decimals; the decimal ball contains the given one."""
     middle, radius, exponent = (int(part) for part in value.mid_rad_10exp(digits))
     drop = max(0, len(str(radius)) - 3)
     radius = -(-radius // 10**drop) if radius else 0
@@ -110,7 +110,7 @@ def texts(value: arb, digits: int = 40) -> list[str]:
 
 
 def upper_text(radius: arb) -> str:
-    """A short decimal that is at least this radius."""
+    """Return a short decimal that is not below this radius."""
     middle, slack, exponent = (int(part) for part in radius.abs_upper().mid_rad_10exp(1))
     drop = max(0, len(str(middle)) - 3)
     return f"{(middle + slack) // 10**drop + 1}e{exponent + drop}"

@@ -1,6 +1,6 @@
-"""The coupled machine near resonance, averaged: slow manifolds, slow flow, steady states, response, decay.
+"""Multiple scales: the averaged coupled machine near resonance (slow manifolds, slow flow, steady states, response, decay).
 
-First order in the mass ratio. `SlowFlow` holds the parameters; the other functions take one.
+All results are of first order in the mass ratio. A `SlowFlow` holds the parameters; the other functions take it as an argument.
 """
 
 from ..manifolds import (

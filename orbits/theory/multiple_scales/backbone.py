@@ -87,7 +87,7 @@ def backbone(flow: SlowFlow, velocity: ArrayLike | None = None) -> Backbone:
 
 
 def resonance_detuning(flow: SlowFlow, amplitude: ArrayLike) -> NDArray | float:
-    """Resonance shift ``sigma_R(C)`` on the attracting part of the manifold; NaN below activation."""
+    """Resonance shift ``sigma_R(C)`` on the attracting part of the manifold; nan below the activation threshold."""
     c = coefficients(flow)
     squared = np.asarray(amplitude, dtype=float) ** 2
     with np.errstate(invalid="ignore"):
@@ -109,7 +109,7 @@ def resonance_frequency(
     natural_frequency : array_like
         ``f_0`` [Hz].
     flow : SlowFlow
-        Gives ``R``, ``h`` and ``eps``.
+        Supplies ``R``, ``h`` and ``eps``.
     """
     shift = resonance_detuning(flow, np.asarray(displacement, float) / np.asarray(cavity, float))
     return np.asarray(natural_frequency, float) * flow.frequency(shift)

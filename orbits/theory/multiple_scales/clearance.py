@@ -1,20 +1,20 @@
-"""Which clearance quiets a resonance most: half-widths against the linear peak, along the tuned backbone.
+"""The clearance that reduces a resonance most: half-width relative to the linear peak, along the tuned backbone.
 
-At phase resonance the forcing ``F`` holds the amplitude ``q`` of the oscillator's first harmonic against its own damping and the
-absorber's. `backbone` gives that to first order in the mass ratio. Here the frequency is kept as it is instead of ``1 + eps sigma``:
-with the harmonics ``k1``, ``k2`` of the impacting absorber (`SlowFlow.harmonics`, no friction) at ``q/b = C``
+At phase resonance the forcing ``F`` balances the damping by the oscillator's dashpot and by the absorber at the amplitude ``q`` of the
+oscillator's first harmonic. `backbone` computes this to first order in the mass ratio, with the frequency ``1 + eps sigma``. Here the
+frequency is not expanded: with the harmonics ``k1``, ``k2`` of the impacting absorber (`SlowFlow.harmonics`, no friction) at ``q/b = C``
 
     Omega^2 = C^2/(C^2 - eps k2),    F/(b k) = eps (lambda Omega C - Omega^2 k1/C)
 
-The linear peak is that of the same forcing with the absorber held fast in its cavity, ``F/(2 D k)``; ``D`` and ``Omega_0`` then belong
-to the mass ``M + m``, and ``2 D = eps lambda/sqrt(1 + eps)``. The half-width over this peak,
+The linear peak ``q_lin = F/(2 D k)`` is the response to the same forcing with the absorber fixed in its cavity; ``D`` and ``Omega_0`` then
+belong to the mass ``M + m``, and ``2 D = eps lambda/sqrt(1 + eps)``. The half-width over this peak,
 
     b/q_lin = lambda/(sqrt(1 + eps) (lambda Omega C - Omega^2 k1/C)),
 
-has a maximum on the attracting part of the manifold: a wider cavity is not entered at resonance in steady impacts, a narrower one lets
-the oscillator swing farther. Sources: the single-harmonic backbone of T. Weidemann, L. A. Bergman, A. F. Vakakis and M. Krack, Energy
-transfer and localization in a forced cyclic chain of oscillators with vibro-impact nonlinear energy sinks, Nonlinear Dynamics (2025), whose
-mass ratio is ``m/(M + m)``; in the quantities of the slow flow: own derivation.
+has a maximum on the attracting part of the manifold: in a wider cavity there is no steady motion with impacts at resonance, in a narrower
+one the amplitude of the oscillator is larger. Sources: the single-harmonic backbone of T. Weidemann, L. A. Bergman, A. F. Vakakis and
+M. Krack, Energy transfer and localization in a forced cyclic chain of oscillators with vibro-impact nonlinear energy sinks, Nonlinear
+Dynamics (2025), whose mass ratio is ``m/(M + m)``; in the quantities of the slow flow: own derivation.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from orbits.arguments import ROUNDOFF
 
 from .flow import SlowFlow
 
-PLACES = 2000  # along the attracting part, where the maximum is looked for first
+PLACES = 2000  # values of B on the attracting part at which the maximum is bracketed
 
 
 @dataclass(frozen=True)
@@ -41,11 +41,11 @@ class TunedBackbone:
     velocity : float array
         ``B``, mean speed of the absorber.
     amplitude : float array
-        ``q/b``, of the oscillator's first harmonic.
+        ``q/b``, amplitude of the oscillator's first harmonic.
     ratio : float array
-        ``b/q_lin``: half-width over the linear peak under the same forcing, the absorber held fast.
+        ``b/q_lin``: half-width over the linear peak under the same forcing with the absorber fixed.
     frequency : float array
-        Of resonance, over that with the absorber held fast.
+        Frequency of resonance, relative to that with the absorber fixed.
     """
 
     velocity: NDArray
@@ -56,10 +56,10 @@ class TunedBackbone:
 
 @dataclass(frozen=True)
 class BestClearance:
-    """The largest half-width that is still entered at resonance; fields as of `TunedBackbone`.
+    """The largest half-width with steady impacts at resonance; fields as in `TunedBackbone`.
 
-    `reduction` is ``q/q_lin``: what is left of the linear peak. `interior` is false where the ratio has no maximum inside the attracting
-    part and its largest value, at an end, is taken.
+    `reduction` is ``q/q_lin``, the amplitude relative to the linear peak. `interior` is False if the ratio has no maximum inside the
+    attracting part; then its largest value, at an end, is used.
     """
 
     velocity: float
@@ -87,7 +87,7 @@ def tuned_backbone(flow: SlowFlow, velocity: ArrayLike | None = None) -> TunedBa
     Raises
     ------
     ValueError
-        If there is friction, or no damping: there is no linear peak then.
+        If there is friction, or no damping (then there is no linear peak).
     """
     _check(flow)
     if velocity is None:
@@ -100,7 +100,7 @@ def tuned_backbone(flow: SlowFlow, velocity: ArrayLike | None = None) -> TunedBa
 
 
 def best_clearance(flow: SlowFlow) -> BestClearance:
-    """The maximum of ``b/q_lin`` inside the attracting part of the manifold, from where it falls to either side.
+    """Find the maximum of ``b/q_lin`` inside the attracting part of the manifold.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def best_clearance(flow: SlowFlow) -> BestClearance:
     Raises
     ------
     ValueError
-        If there is friction, or no damping: there is no linear peak then.
+        If there is friction, or no damping (then there is no linear peak).
     """
     _check(flow)
     places = np.linspace(float(flow.activation.velocity), float(flow.symmetry_limit.velocity), PLACES)
@@ -133,7 +133,7 @@ def best_clearance(flow: SlowFlow) -> BestClearance:
 
 
 def _held(flow: SlowFlow, b: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-    """``F/(eps b k)``, ``C``, ``Omega`` at phase resonance, and the derivative of the first with respect to ``B``."""
+    """Return ``F/(eps b k)``, ``C`` and ``Omega`` at phase resonance, and the derivative of the first with respect to ``B``."""
     eps, damping = flow.mass_ratio, flow.damping
     squared, k1, k2 = flow.harmonics(b)
     d_squared, d_k1, d_k2 = flow.harmonic_slopes(b)

@@ -1,8 +1,8 @@
-"""The slow flow's steady states as a problem F(u, p) = 0, for any continuation package.
+"""Steady states of the slow flow as a problem F(u, p) = 0, for any continuation package.
 
 Unknowns are the position on the manifold (``B`` or ``delta``) and the phase ``gamma``; F is the slow
-vector field in these coordinates, so that the eigenvalues of dF/du are those of the slow flow: folds and
-Hopf points are found by whoever watches them. With contvines:
+vector field in these coordinates. So the eigenvalues of dF/du are those of the slow flow, and show folds and
+Hopf points. With contvines:
 
     response = SlowResponse(SlowFlow(forcing=2.47), "detuning")
     u, p = response.start(detuning=-2.58)
@@ -10,10 +10,10 @@ Hopf points are found by whoever watches them. With contvines:
     spectrum="flow")
 
 At the lowest point of the impacting manifold ``C^2`` does not determine ``B`` and the vector field is
-singular: the slow flow jumps off the manifold there, one eigenvalue passes through infinity, and a
-continuation reports it as a branch point. ``regular=True`` multiplies the first equation by
-``d(C^2)/dB``: the same steady states and folds, smooth across that point, for curves alone; its
-eigenvalues mean nothing.
+singular: the slow flow leaves the manifold there, one eigenvalue passes through infinity, and
+continuation reports a branch point. ``regular=True`` multiplies the first equation by ``d(C^2)/dB``: the
+steady states and folds stay the same and the curve is smooth across that point, but the eigenvalues have
+no meaning.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ PARAMETERS = ("detuning", "frequency", "forcing", "damping")
 
 @dataclass(frozen=True)
 class SlowResponse:
-    """F(u, p) of the slow flow's steady states; an instance is the function F.
+    """The function F(u, p) whose zeros are the steady states of the slow flow; call an instance to evaluate it.
 
     Parameters
     ----------
@@ -39,9 +39,9 @@ class SlowResponse:
     parameter : {"detuning", "frequency", "forcing", "damping"}
     manifold : {"impacting", "sliding"}
     detuning : float
-        Held fixed where another parameter varies.
+        Detuning if another parameter varies.
     regular : bool
-        See the module's text.
+        Multiply the first equation by ``d(C^2)/dB``; see the docstring of the module.
     """
 
     flow: SlowFlow
@@ -99,12 +99,12 @@ class SlowResponse:
         return np.array([-amplitude * np.sin(phase) * scale, -np.cos(phase) / (2.0 * amplitude)], dtype=float)
 
     def start(self, p: float | None = None, **named: float) -> tuple[NDArray[np.float64], float]:
-        """A steady state to start from: the one with the largest amplitude at a parameter value.
+        """Return (u, p) of the steady state with the largest amplitude at a parameter value, given as `p` or by name.
 
         Raises
         ------
         ValueError
-            If there is none on this manifold.
+            If this manifold has no steady state there.
         """
         value = float(named[self.parameter]) if p is None else float(p)
         flow, sigma = self._at(value)

@@ -1,9 +1,8 @@
-"""Free vibration along the impacting manifold: how fast the oscillator loses its energy, and when the
-absorber lets go.
+"""Free decay along the impacting manifold, until the amplitude reaches the activation threshold.
 
 With ``G = 0`` the amplitude decouples from the phase, ``(C^2)' = -alpha_c C^2 - beta_c y + offset_c`` with
-``y = sqrt(C^2 - C_min^2)``. Leaving the middle term out gives the paper's linear upper bound
-``C^2 <= (C_0^2 - offset_c/alpha_c) exp(-alpha_c tau_1) + offset_c/alpha_c``; kept, the equation separates,
+``y = sqrt(C^2 - C_min^2)``. Without the middle term one obtains the linear upper bound of the paper,
+``C^2 <= (C_0^2 - offset_c/alpha_c) exp(-alpha_c tau_1) + offset_c/alpha_c``. The full equation is separable,
 ``tau_1 = 2 int z dz/(alpha_c z^2 + beta_c z + c)`` with ``c = alpha_c C_min^2 - offset_c``, and is solved
 here exactly.
 """
@@ -21,6 +20,7 @@ from .flow import SlowFlow
 
 
 def _rise(flow: SlowFlow, amplitude: ArrayLike, what: str) -> NDArray:
+    """Return ``y = sqrt(C^2 - C_min^2)``; raise a ValueError that names `what` if an amplitude lies below ``C_min``."""
     low = float(flow.activation.amplitude)
     squared = np.asarray(amplitude, dtype=float) ** 2 - low**2
     if np.any(squared < -THEORY.rounding):
@@ -67,8 +67,8 @@ def decay_time(flow: SlowFlow, start: ArrayLike, end: ArrayLike | None = None) -
 
 
 def decay_amplitude(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArray:
-    """Amplitude ``C`` at slow times ``eps tau`` of a free decay from `start`; NaN once the absorber has
-    let go."""
+    """Amplitude ``C`` at slow times ``eps tau`` of a free decay from `start`; nan after the activation
+    threshold is reached."""
     low = float(flow.activation.amplitude)
     top = float(_rise(flow, start, "start"))
     rises = top * (1.0 - np.cos(np.linspace(0.0, np.pi, 801))) / 2.0
@@ -92,7 +92,7 @@ def decay_amplitude(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArr
 def decay_bound(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArray:
     """The paper's exponential upper bound of the amplitude ``C`` at slow times ``eps tau``.
 
-    NaN once it falls below the activation threshold: the absorber has let go before, and it bounds nothing.
+    nan where it is below the activation threshold, because the motion along the manifold has ended before.
     """
     c = coefficients(flow)
     rest = c.offset_c / c.alpha_c
@@ -102,17 +102,17 @@ def decay_bound(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArray:
 
 
 def decay_rate(flow: SlowFlow) -> float:
-    """``alpha_c``: rate of ``C^2`` per unit of slow time at large amplitude. It does not depend on
+    """``alpha_c``: decay rate of ``C^2`` per unit of slow time at large amplitude, independent of
     friction."""
     return float(coefficients(flow).alpha_c)
 
 
 def damping_ratio(flow: SlowFlow, amplitude: ArrayLike | None = None) -> NDArray | float:
-    """Damping ratio that would drain the oscillator as fast as absorber and dashpot do together.
+    """Damping ratio equivalent to absorber and dashpot together.
 
-    ``zeta = -eps (C^2)'/(2 C^2)``; without an amplitude its limit at large amplitude ``eps alpha_c/2``,
-    in which the absorber's share is ``2 eps R/(pi (pi^2/4 + R^2))`` and friction has none: what friction adds tends to
-    ``-(4/pi) eps R^2 h/(pi^2/4 + R^2)^(3/2)/C``, by way of ``beta_c``.
+    ``zeta = -eps (C^2)'/(2 C^2)``. Without `amplitude`, return its limit at large amplitude ``eps alpha_c/2``, to which
+    the absorber contributes ``2 eps R/(pi (pi^2/4 + R^2))``. The contribution of friction vanishes in this limit as
+    ``-(4/pi) eps R^2 h/(pi^2/4 + R^2)^(3/2)/C`` (through ``beta_c``).
     """
     c = coefficients(flow)
     if amplitude is None:

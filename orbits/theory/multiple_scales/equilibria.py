@@ -1,6 +1,6 @@
-"""Steady states of the slow flow: every one, on both manifolds.
+"""All steady states of the slow flow on both manifolds.
 
-Without the phase, ``(lambda C^2 - k1)^2 + (2 sigma C^2 - k2)^2 = G^2 C^2``. On the impacting manifold
+Elimination of the phase gives ``(lambda C^2 - k1)^2 + (2 sigma C^2 - k2)^2 = G^2 C^2``. On the impacting manifold
 ``C^2``, ``k1`` and ``k2`` are quadratic in ``B``, so this is a quartic in ``B``; on the sliding manifold
 ``C^2`` divides out and a quadratic in the turning point ``delta`` remains (the paper's equation with the
 square root, made rational by ``delta``).
@@ -25,9 +25,9 @@ from .polynomials import real_roots, root_bound
 class Equilibrium:
     """One steady state.
 
-    `stable` says whether the slow flow returns to it; `attracting` whether the fast motion is drawn to
-    the manifold there. A response that is seen has both. `valid` is the paper's sufficient condition ``C
-    < B - h`` (impacting) or the bounds of sliding.
+    `stable`: the slow flow returns to it. `attracting`: the fast motion converges to the manifold there.
+    A response that can be observed (`seen`) has both. `valid`: the paper's sufficient condition ``C
+    < B - h`` holds (impacting), or the amplitude lies within the bounds of sliding.
     """
 
     manifold: Manifold
@@ -42,12 +42,12 @@ class Equilibrium:
 
     @property
     def stable(self) -> bool:
-        """Both eigenvalues of the slow flow lie in the left half plane."""
+        """Whether both eigenvalues of the slow flow lie in the left half plane."""
         return all(value.real < 0 for value in self.eigenvalues)
 
     @property
     def seen(self) -> bool:
-        """Stable along the manifold and attracting across it."""
+        """Whether the state can be observed: stable along the manifold and attracting across it."""
         return self.stable and self.attracting
 
     @property
@@ -87,14 +87,14 @@ def sliding_polynomial(flow: SlowFlow, detuning: ArrayLike) -> NDArray[np.float6
 
 
 def impacting_velocities(flow: SlowFlow, detuning: ArrayLike) -> NDArray[np.float64]:
-    """All ``B > 0`` of impacting equilibria, rising, padded with NaN; shape (..., 4). Broadcasts over all
+    """All ``B > 0`` of impacting equilibria, ascending, padded with nan; shape (..., 4). Broadcasts over all
     fields."""
     polynomial = impacting_polynomial(flow, detuning)
     return real_roots(polynomial, 0.0, root_bound(polynomial))
 
 
 def sliding_turning_points(flow: SlowFlow, detuning: ArrayLike) -> NDArray[np.float64]:
-    """All ``delta`` of equilibria that slide without sticking or impact, padded with NaN; shape (..., 2)."""
+    """All ``delta`` of equilibria that slide without sticking or impact, padded with nan; shape (..., 2)."""
     polynomial = sliding_polynomial(flow, detuning)
     low = np.broadcast_to((2.0 / np.pi) * flow.level, polynomial.shape[:-1])
     return real_roots(polynomial, low, np.ones_like(low))
@@ -109,7 +109,7 @@ def phase_at(
 
 
 def equilibrium_at(flow: SlowFlow, position: float, detuning: float, manifold: Manifold) -> Equilibrium:
-    """The record of a known steady state."""
+    """Return the `Equilibrium` at a position that is known to be one."""
     phase = float(phase_at(flow, position, detuning, manifold))
     amplitude = float(np.sqrt(flow.harmonics(position, manifold)[0]))
     first, second = flow.eigenvalues(position, phase, manifold)
@@ -135,13 +135,13 @@ def equilibrium_at(flow: SlowFlow, position: float, detuning: float, manifold: M
 
 
 def equilibria(flow: SlowFlow, detuning: float) -> list[Equilibrium]:
-    """All steady states at one detuning: impacting first, by rising ``B``, then sliding.
+    """Return all steady states at one detuning: first the impacting ones with ascending ``B``, then the sliding ones.
 
     Raises
     ------
     ValueError
-        If the flow's fields or the detuning are arrays; `impacting_velocities` and
-        `sliding_turning_points` take those.
+        If the flow's fields or the detuning are arrays; use `impacting_velocities` and
+        `sliding_turning_points` for arrays.
     """
     found = impacting_velocities(flow, detuning)
     if found.ndim != 1:

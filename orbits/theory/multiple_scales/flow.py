@@ -1,14 +1,14 @@
 """The averaged (slow) flow of the oscillator near resonance, ``Omega = 1 + eps sigma``.
 
 To first order in the mass ratio the oscillator moves as ``v = C sin(Omega tau + gamma)``; amplitude and
-phase drift on the slow time ``tau_1 = eps tau``. The absorber's force on it is its mean velocity times a
-triangle wave plus a ripple due to friction, and only their first harmonics count:
+phase vary with the slow time ``tau_1 = eps tau``. The force of the absorber on it is the mean velocity times a
+triangle wave plus a ripple due to friction; only their first harmonics have an effect:
 
     (C^2)'  = -lambda C^2 + k1 - G C sin(gamma)
     gamma'  = (k2 - G C cos(gamma))/(2 C^2) - sigma
 
-    impacting  k1 = -(4/pi) B (R B + h) - kappa h (1 - pi B/2),   k2 = (4/pi) B (1 - pi B/2) - kappa h (R
-    B + h) sliding    k1 = -kappa h delta,                               k2 = -kappa h^2
+    impacting  k1 = -(4/pi) B (R B + h) - kappa h (1 - pi B/2),   k2 = (4/pi) B (1 - pi B/2) - kappa h (R B + h)
+    sliding    k1 = -kappa h delta,                               k2 = -kappa h^2
 
 Sources: Youssef, Karoui and Leine, equations of the sections "Steady-state solutions and flow on the SIM"
 and "Purely sliding absorber", with two corrections: the factor of the first term is 4/pi, and kappa is
@@ -37,17 +37,17 @@ CLOSURES: dict[str, float] = {"exact": 8.0 / math.pi**2, "paper": (math.pi**4 - 
 
 @dataclass(frozen=True)
 class SlowFlow:
-    """Parameters of the coupled machine as the slow flow sees them; fields may be arrays that broadcast.
+    """Parameters of the slow flow of the coupled machine; fields may be arrays, which broadcast.
 
     Parameters
     ----------
     forcing : float
         ``G = E/(b eps)``; 0 for free vibration.
     restitution, friction, gravity, damping, mass_ratio : float
-        ``r``, ``mu``, ``g/(b omega_0^2)``, ``c/(m omega_0)`` and ``m/M``. The mass ratio only translates
-        slow time and detuning; the flow itself is its limit 0.
+        ``r``, ``mu``, ``g/(b omega_0^2)``, ``c/(m omega_0)`` and ``m/M``. The mass ratio only converts
+        slow time and detuning; the flow itself is the limit of mass ratio 0.
     closure : {"exact", "paper"}
-        First harmonic of the friction ripple, see the module's text.
+        First harmonic of the friction ripple; see the docstring of the module.
     """
 
     forcing: Reals = 2.47
@@ -118,7 +118,7 @@ class SlowFlow:
         return 1.0 + np.asarray(self.mass_ratio) * np.asarray(detuning, dtype=float)
 
     def attracts(self, velocity: ArrayLike) -> NDArray[np.bool_]:
-        """Whether the fast motion is drawn to the impacting manifold at this ``B`` (between its two
+        """Whether the fast motion converges to the impacting manifold at this ``B`` (between its two
         bifurcations)."""
         b = np.asarray(velocity, dtype=float)
         return (b > self.activation.velocity) & (b < self.symmetry_limit.velocity)
@@ -181,7 +181,7 @@ class SlowFlow:
         Returns
         -------
         ndarray of complex, shape (..., 2)
-            Infinite at the lowest point of the impacting manifold, where ``C^2`` is no coordinate.
+            Infinite at the lowest point of the impacting manifold, where ``C^2`` does not determine ``B``.
         """
         a, b, c, d = self.rate_slopes(position, phase, manifold)
         slope = self.harmonic_slopes(position, manifold)[0]

@@ -1,4 +1,4 @@
-"""All real roots of many small polynomials at once, none missed."""
+"""Reliable computation of all real roots of many small polynomials at once."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from orbits.settings import THEORY
 
-_BISECTIONS = 110
+_BISECTIONS = 110  # halvings of each bracket, enough for full precision
 
 
 def _value(coefficients: NDArray, x: NDArray) -> NDArray:
-    """Horner's rule; `coefficients` (..., n+1) highest power first, `x` (..., m)."""
+    """Evaluate polynomials by Horner's rule; `coefficients` (..., n+1) highest power first, `x` (..., m)."""
     total = np.zeros_like(x)
     for k in range(coefficients.shape[-1]):
         total = total * x + coefficients[..., k : k + 1]
@@ -19,7 +19,7 @@ def _value(coefficients: NDArray, x: NDArray) -> NDArray:
 
 
 def root_bound(coefficients: ArrayLike) -> NDArray:
-    """Cauchy's bound on the modulus of the roots, leading coefficients that vanish left out.
+    """Cauchy's bound on the modulus of the roots; leading coefficients that are zero to rounding are ignored.
 
     Parameters
     ----------
@@ -42,12 +42,12 @@ def root_bound(coefficients: ArrayLike) -> NDArray:
 
 
 def real_roots(coefficients: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.float64]:
-    """All real roots in an interval, of every polynomial in an array.
+    """Return all real roots in an interval, of every polynomial in an array.
 
     Between two neighbouring roots of its derivative a polynomial is monotone, so it has at most one
-    root there, found by bisection wherever the sign changes. The roots of the derivative come from the
-    same rule. No root can be missed, whatever the conditioning; a root that the polynomial only touches
-    (a fold of the equilibria) is returned once, when it is touched to rounding.
+    root there; bisection finds it if the sign changes. The roots of the derivative are computed in the
+    same way. So no root is missed, whatever the conditioning. A double root (a fold of the
+    equilibria) is returned once, if the polynomial is zero there to rounding.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def real_roots(coefficients: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDAr
     Returns
     -------
     ndarray, shape (..., n)
-        Roots in rising order, padded with NaN.
+        Roots in ascending order, padded with nan.
     """
     c = np.asarray(coefficients, dtype=float)
     degree = c.shape[-1] - 1

@@ -1,9 +1,9 @@
-"""Frequency response of the slow flow by arc length of its own shape: closed form, no continuation needed.
+"""Frequency response of the slow flow in closed form, without continuation.
 
-For a given position on a manifold the detuning follows in closed form,
-``2 sigma C^2 = k2 +- sqrt(G^2 C^2 - (lambda C^2 - k1)^2)``, and the two signs meet where the root
-vanishes (phase resonance, ``cos(gamma) = 0``). Every connected piece of the response is therefore an
-explicit curve.
+For a given position on a manifold the detuning is known in closed form,
+``2 sigma C^2 = k2 +- sqrt(G^2 C^2 - (lambda C^2 - k1)^2)``. The two signs meet where the square root
+vanishes (phase resonance, ``cos(gamma) = 0``). So every connected piece of the response is an
+explicit curve, with a parameter t that passes from one sign to the other.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class ResponseCurve:
 
     Arrays of equal length along the curve: `position` (``B`` or ``delta``), `velocity` ``B``, `amplitude`
     ``C``, `phase` ``gamma``, `detuning` ``sigma``, `frequency` ``Omega``, `eigenvalues` (n, 2), `attracting`.
-    `closed` tells an isola from an arc cut off by the manifold's end.
+    `closed` is True for an isola and False for an arc that ends at an end of the manifold.
     """
 
     flow: SlowFlow
@@ -53,12 +53,12 @@ class ResponseCurve:
 
     @property
     def stable(self) -> NDArray[np.bool_]:
-        """Stable along the manifold (the slow flow's eigenvalues)."""
+        """Whether each point is stable along the manifold (by the eigenvalues of the slow flow)."""
         return np.all(np.real(self.eigenvalues) < 0, axis=-1)
 
     @property
     def seen(self) -> NDArray[np.bool_]:
-        """Stable along the manifold and attracting across it."""
+        """Whether each point can be observed: stable along the manifold and attracting across it."""
         return self.stable & self.attracting
 
     def __len__(self) -> int:
@@ -74,8 +74,8 @@ class ResponsePoint:
 
 
 def _existence(flow: SlowFlow, manifold: Manifold) -> NDArray:
-    """Polynomial in the position that is positive where a steady state exists: G^2 C^2 - (lambda C^2 -
-    k1)^2."""
+    """Coefficients of G^2 C^2 - (lambda C^2 - k1)^2 as a polynomial in the position; it is positive where a
+    steady state exists."""
     R, h, kappa = float(flow.loss), float(flow.level), flow.kappa
     if manifold == "impacting":
         squared = np.array([0.25 * np.pi**2 + R**2, 2.0 * R * h - np.pi, 1.0 + h**2])
@@ -87,7 +87,7 @@ def _existence(flow: SlowFlow, manifold: Manifold) -> NDArray:
 
 
 def _place(ends: tuple[float, float], t: Reals) -> Reals:
-    """Position along a piece: t from 0 to pi on one arm, pi to 2 pi back on the other."""
+    """Position along a piece: t from 0 to pi on one side of the resonance, pi to 2 pi back on the other."""
     low, high = ends
     return 0.5 * (low + high) - 0.5 * (high - low) * np.cos(t)
 
@@ -136,7 +136,7 @@ def _curve(
 def frequency_response(
     flow: SlowFlow, manifold: Manifold = "impacting", points: int = 800
 ) -> list[ResponseCurve]:
-    """All pieces of the frequency response at fixed forcing.
+    """Compute all pieces of the frequency response at fixed forcing.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def frequency_response(
     Returns
     -------
     list of ResponseCurve
-        By rising position; empty where the forcing cannot hold any steady state.
+        By ascending position; empty if there is no steady state with this forcing.
     """
     if manifold == "sliding" and float(flow.level) == 0.0:
         return []
@@ -186,9 +186,9 @@ def frequency_response(
 
 
 def special_points(curve: ResponseCurve) -> list[ResponsePoint]:
-    """Folds and Hopf points of the slow flow, phase resonance and the manifold's own limits along a piece.
+    """Find folds and Hopf points of the slow flow, phase resonance and the limits of the manifold along a piece.
 
-    A fold is a zero of the determinant of the slow flow's Jacobian, a Hopf point a zero of its trace
+    A fold is a zero of the determinant of the Jacobian of the slow flow, a Hopf point a zero of its trace
     where the determinant is positive; both are located to rounding on the closed-form curve.
     """
     flow, manifold = curve.flow, curve.manifold
@@ -240,8 +240,8 @@ def hopf_velocity(flow: SlowFlow) -> NDArray | float:
 
     The trace of the slow flow in ``(C^2, gamma)`` contains neither phase nor forcing:
     ``-lambda + (dk1/dB)/(d(C^2)/dB)``, with the exact closure ``-lambda - (8/pi) R B/(d(C^2)/dB)``. It
-    vanishes at ``B = lambda (pi - 2 R h)/(lambda (pi^2/2 + 2 R^2) + 8 R/pi)``, below ``B_min``: on the
-    attracting part it is negative, so steady states there lose stability at folds alone. (Own derivation.
+    vanishes at ``B = lambda (pi - 2 R h)/(lambda (pi^2/2 + 2 R^2) + 8 R/pi)``, below ``B_min``. On the
+    attracting part the trace is negative, so steady states there lose stability only at folds. (Own derivation.
     With the paper's closure a term in ``h`` remains.)
     """
     R, h = flow.loss, flow.level

@@ -1,4 +1,4 @@
-"""Integrate the slow flow along one manifold until it settles, time is up, or the manifold ends."""
+"""Integrate the slow flow along one manifold until the time is over or the manifold ends."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ENDS = {
 
 @dataclass(frozen=True)
 class SlowTrajectory:
-    """Slow motion along a manifold: arrays over `slow_time` ``eps tau``, and a sentence why it ended."""
+    """Slow motion along a manifold: arrays over `slow_time` ``eps tau``, and why it ended (a key of `ENDS` and its sentence)."""
 
     manifold: Manifold
     slow_time: NDArray
@@ -94,7 +94,7 @@ def integrate(
     if manifold == "sliding":
         limits = {"stick": 2.0 * h / np.pi, "wall": 1.0}
     else:
-        # the extremum itself is singular (C^2 is no coordinate there); stop a hair before it
+        # the lowest point is singular (C^2 does not determine B there), so stop slightly before it
         limits = {"activation": float(flow.activation.velocity) + THEORY.off_end}
         if stop_at_symmetry_limit:
             limits["symmetry-breaking"] = float(flow.symmetry_limit.velocity)
