@@ -1,6 +1,6 @@
-"""Certificates checked anew with nothing but the certificate and mpmath's intervals; none of the prover's code is used.
-A chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, parameter) are m + s q + [-r, r], one
-solution for every |q| <= h; r = 0 where q alone fixes an unknown, h = 0 for an orbit, which lies in the tiles beside it."""
+"""Check certificates of proofs independently: only the certificate and mpmath's intervals are used, no code of the prover.
+It is a chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, parameter) are m + s q + [-r, r], one
+solution for every |q| <= h; r = 0 for an unknown that q alone fixes, h = 0 for an orbit, which lies in the tiles next to it."""
 import re
 from typing import Any
 
@@ -37,7 +37,7 @@ def cos(x): return x.of(iv.cos(x[0]), -iv.sin(x[0]))
 def exp(x): return x.of(iv.exp(x[0]), iv.exp(x[0]))
 def sign(x): return True if x.a > 0 else False if x.b < 0 else None
 def machine(c, parameter):
-    """All numbers: constants times powers of the parameter; friction's limit by mode, walls and restitution by side."""
+    """The machine's numbers, constants times powers of the parameter: friction limit by mode, walls and restitution by side."""
     p = {name: (parameter ** number(k) if k != "0" else jet(1)) * (number(a) + BOTH * number(r))
          for name, (a, r, k) in c["parameters"].items()}
     weight, tilt = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", jet(0))
@@ -47,7 +47,7 @@ def machine(c, parameter):
         p |= {f"limit{s}": weight * cos(tilt) * friction, f"bounce{s}": r, f"wall{s}": p.get("distance" + side, jet(1)) * s}
     return p | {"whole": p["e"] + 1}
 def motion(p, letter, mode, x, phase, rates=5):
-    """q1 = X sin + Y cos + rest + (y cos bt + z sin bt) exp(-dt) and w = q1 - q2 with rates; q2 falls; v = q1 + e q2."""
+    """q1 = X sin + Y cos + rest + (y cos bt + z sin bt) exp(-dt), w = q1 - q2 and derivatives; q2 has constant acceleration."""
     e, om, whole, wall, s, c, zero = p["e"], p["frequency"], p["whole"], WALL.get(letter), sin(x[0]), cos(x[0]), jet(0)
     t, pull, mass = (phase - x[0]) / om, (p[f"limit{mode}"] * mode - p["bias"]) * abs(mode) / whole, jet(1) if mode else whole
     X, Y, y, z, C, S, d, b = p.get("amplitude"), *[zero] * 7
@@ -67,12 +67,12 @@ def motion(p, letter, mode, x, phase, rates=5):
         X, Y, y, z, rest = om * Y * -1, om * X, b * z - d * y, b * y * -1 - d * z, zero
     return q, [a - f for a, f in zip(q, [*fall, zero, zero])] if mode else [w0, *[zero] * 4]
 def flights(c, p, x, end):
-    """Of every flight: letter, mode, the event after it and the mode then, both nodes; `end` or its image closes the word."""
+    """For every flight: letter, mode, event at its end, mode after it, both nodes; the last one ends at `end` or its image."""
     nodes, t, w = [x[j:j + c["n"]] for j in range(0, len(x) - 1, c["n"])], 1 - 2 * c["half"], p["wall1"] + p["wall-1"]
     end = [end[0] + iv.pi * c["periods"] * (2 - c["half"]), end[1] * t + w * c["off"], *(a * t for a in end[2:c["n"]])]
     return [(*word, node, y) for word, node, y in zip(c["word"], nodes, [*nodes[1:], end])]
 def equations(c, flat, shift=0):
-    """Zero on an orbit; unknowns are counted from 1, those of the node that closes the word from 1 + shift."""
+    """Residuals of an orbit; unknowns are numbered from 1, those of the node that closes the word from 1 + shift."""
     x, end = ([Jet({0: a, u: iv.mpf(1)}) for u, a in enumerate(flat, 1 + first)] for first in (0, shift))
     p, rows = machine(c, x[-1]), []
     for letter, mode, wall, after, node, y in flights(c, p, x, end) if c["events"] != "o" else []:
@@ -83,7 +83,7 @@ def equations(c, flat, shift=0):
         rows += [v - y[2], speed - y[3]] if y[2:] else []
     return rows
 def proved(c, box):
-    """The box in intervals, of a possible machine, with one solution: |Y F(m + s q)| + |1 - Y DF(box)| r < r (Krawczyk)."""
+    """The box in intervals, with exactly one solution: |Y F(m + s q)| + |1 - Y DF(box)| r < r (Krawczyk); else refused."""
     triples, n = [triple for node in [*box["nodes"], [box["parameter"]]] for triple in node], c["n"] * len(c["word"])
     m, s, r = zip(*([number(text) for text in triple] for triple in triples))
     h, free, kind = number(box["half_width"]), [u for u, b in enumerate(r, 1) if b > 0], box["kind"]
@@ -105,7 +105,7 @@ def proved(c, box):
         need(moved.b < r[j - 1].a, f"unknown {j} leaves its box")
     return box | {"flat": [*zip(m, s, r)], "q": q, "hull": hull}
 def positive(c, p, s, letter, mode, wall, after, x, y):
-    """Whether f > 0 in a flight: by mean values on cells; beside an end at which f vanishes, by a rate that does not."""
+    """Whether f > 0 in a flight: by mean value forms on cells; next to an end at which f vanishes, by a derivative's sign."""
     free, zeros = c["frictionless"], ({"t": 1, "u": 2}.get(letter, 0), wall in "ts") if mode else (0, after == s)
     start, end = (WALL[letter] == s, WALL[wall] == s) if free else zeros
     def rates(phase):
@@ -124,7 +124,7 @@ def positive(c, p, s, letter, mode, wall, after, x, y):
         if not beside and not sign(value + f[1] * (over - here) / p["frequency"][0]):
             cells += [(low, (low + high) / 2), ((low + high) / 2, high)]
 def conditions(c, hull, wanted):
-    """The inequalities of a real motion throughout a box, [what, event, side], if wanted: True, False or None each."""
+    """Verdicts (True, False, None) on the inequalities of a real motion in a box, of the wanted keys [name, event, side]."""
     x, p, found = [jet(a) for a in hull], machine(c, jet(hull[-1])), []
     for i, (letter, mode, wall, after, node, y) in enumerate(flights(c, p, x, x)):
         found += [sign((y[0] - node[0])[0])] if wanted(["duration", i, 0]) else []
@@ -139,12 +139,12 @@ def solved(M, B):  # Cramer's rule: no pivots, so nothing is compared
     n, by = range(len(M)), 1 / det(M)
     return iv.matrix([[det([[*row[:i], b[j], *row[i + 1:]] for row, b in zip(M, B)]) * by for j in n] for i in n])
 def spectrum(c, hull, basis) -> Any:
-    """det(1 - A), det(1 + A) of the map A over the word, and how many multipliers are outside the circle, the rest inside."""
+    """det(1 - A), det(1 + A) of the map A over the word; how many multipliers lie outside the circle, or None if not proved."""
     n, p, rows, loose = c["n"], machine(c, jet(hull[-1])), equations(c, hull, 10**6), not {*c["events"]} & {*WALL}
     if c["events"] == "o": return iv.mpf(1), iv.mpf(1), 0 if n == 2 or (p["e"] * p["damping"])[0].a > 0 else None
     basis = [[number(text) for text in row] for row in basis]
     for j, shift in enumerate([0, 1, -p["e"][0], 0][:n] if loose else []):
-        basis[j][1] = iv.mpf(shift)  # w may be shifted, with v + e w kept: that multiplier is left out
+        basis[j][1] = iv.mpf(shift)  # the multiplier 1 of a free shift of w, with v + e w constant, is left out
     A = iv.matrix(basis)
     for i in range(0, len(rows), n):
         old, new = ([[row.get(at + j, iv.zero) for j in range(1, n + 1)] for row in rows[i:i + n]]
@@ -156,7 +156,7 @@ def spectrum(c, hull, basis) -> Any:
     counts = [outside for outside in range(k + 1) if all(sign(det(H[outside][:j, :j].tolist())) for j in range(1, k + 1))]
     return det((iv.eye(k) - A).tolist()), det((iv.eye(k) + A).tolist()), counts[0] if counts else None
 def changed(c, tile, beside):
-    """Whether the orbits on both sides of a tile differ as they do about a special point of its kind, and in no more."""
+    """Whether the orbits on both sides of a tile differ exactly as they do at a special point of the tile's kind."""
     if tile["kind"] == "border":
         sides = [conditions(c, orbit["hull"], lambda key: key in tile["conditions"]) for orbit in beside]
         return sides in [[[a] * len(tile["conditions"] or "?") for a in pair] for pair in ([True, False], [False, True])]
@@ -193,7 +193,7 @@ def verify(c):
         *ends, k = (iv.one, iv.one, None) if kind or steady is None else spectrum(c, box["hull"], box["basis"])
         need(kind or steady is (False if k or False in map(sign, ends) else True if k == 0 else None), "stability")
 def check(c):
-    """Verify a certificate, or a list of them, whatever is wrong with it."""
+    """Verify a certificate, or a list of them; raise `Refused` for any defect."""
     try:
         for one in c if c and isinstance(c, list) else [c]: verify({**one})
     except (LookupError, TypeError, AttributeError, ArithmeticError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""What is refused before a proof is tried: words without equations, halves without an image, parameters out of range."""
+"""Checks before a proof: words without equations, symmetric halves without a mirror image, parameters out of range."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SIDED = ("restitution", "friction")
 def motif_of(
     machine: str, events: Sequence[str], modes: Sequence[int], periods: int, half: bool, frictionless: bool
 ) -> Motif:
-    """The part of a word that is solved for.
+    """Return the part of a word that is solved for: half of it if `half`, else all of it.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def require_mirror(
     nodes: np.ndarray,
     given: Mapping[str, Given],
 ) -> None:
-    """Refuse to prove half a word for the whole where the other half is not its mirror image.
+    """Raise an error if the second half of an orbit is not the mirror image of the first.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def require_mirror(
 
 
 def mirrored(given: Mapping[str, Given], varying: Varying | None = None) -> bool:
-    """Whether the mirror image of a motion is one, too: a cavity must be level, with exactly one restitution and one friction."""
+    """Whether the machine is symmetric, so that the mirror image of a motion is a motion: level cavity, equal restitutions, equal frictions."""
     told = {**given, **(varying.numbers if varying else {})}
     pairs = [(f"{name}_left", f"{name}_right") for name in SIDED if f"{name}_left" in told]
     level = Decimal(str(told.get("slope", "0"))) == 0
@@ -73,7 +73,7 @@ def mirrored(given: Mapping[str, Given], varying: Varying | None = None) -> bool
 
 
 def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | None = None) -> None:
-    """Refuse half a word where the mirror image of a motion is none.
+    """Raise an error if half a word is to be solved for, but the machine is not symmetric or the number of periods is even.
 
     Raises
     ------
@@ -86,12 +86,12 @@ def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | 
 
 
 def check_parameters(motif: Motif, p: Mapping[str, arb]) -> None:
-    """Refuse parameters outside their range, and friction where the word has none.
+    """Raise an error for parameters out of range, and for friction that does not agree with the word.
 
     Raises
     ------
     ProofError
-        Naming the parameter.
+        The message names the parameter.
     """
     for name, value in p.items():
         if name.startswith("restitution"):

@@ -2,9 +2,9 @@
 
     A_i x_i + D_i x_{i+1} + E_i e = b_i   (i = 0 ... l - 1, x_l = x_0),        sum_i r_i x_i + s e = c   (as many rows as e has entries)
 
-Every entry is a ball; the result encloses the solutions of all real systems inside, and that no pivot holds zero proves all of
-them regular (Neumaier, *Interval Methods for Systems of Equations*, section 4.5). The unknowns x_1 ... x_{l-1} are eliminated
-one after another between two block rows (and the border rows met so far), with pivoting among these; x_0 and e come last.
+Every entry is a ball. The result encloses the solutions of all real systems inside; if no pivot contains zero, all of
+them are regular (Neumaier, *Interval Methods for Systems of Equations*, section 4.5). The unknowns x_1 ... x_{l-1} are eliminated
+one after another from two block rows (and those border rows that contain them), with pivoting among these rows; x_0 and e come last.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
     Nodes = Sequence[Sequence[arb]]
     Solution = tuple[list[list[arb]], list[arb]]
-    """The unknowns block by block, and the further ones."""
+    """The unknowns x_i block by block, and the further unknowns e."""
 
 
 class Singular(ArithmeticError):
-    """Some real matrix inside may be singular."""
+    """A pivot may be zero: some real matrix inside the interval matrix may be singular."""
 
 
 @dataclass
@@ -39,11 +39,11 @@ class Blocks:
     b : list (l) of lists (k)
         Right sides.
     rows : list (m) of dict of int to list (k)
-        Each border row's coefficients of the one x_i that it reads, by i.
+        For each border row {i: coefficients of x_i}, with the only i on which it depends.
     corner : list (m) of lists (m)
-        The border rows' coefficients of the further unknowns.
+        Coefficients of the further unknowns in the border rows.
     c : list (m)
-        Their right sides.
+        Right sides of the border rows.
     """
 
     A: list[list[list[Any]]]
@@ -56,7 +56,7 @@ class Blocks:
 
 
 def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
-    """Enclosures of x_0 ... x_{l-1} and of the further unknowns.
+    """Return enclosures of x_0 ... x_{l-1} and of the further unknowns.
 
     Raises
     ------
@@ -66,7 +66,8 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
     length, k, m = len(system.A), len(system.A[0]), len(system.c)
     last = length - 1
     nothing = [0] * k
-    borders: dict[int, list[list[Any]]] = {}  # by the block they read: coefficients of it, e, right side
+    # block i -> border rows that depend on it: coefficients of x_i, [coefficients of e, right side]
+    borders: dict[int, list[list[Any]]] = {}
     for row, corner, c in zip(system.rows, system.corner, system.c):
         for i, own in row.items():
             borders.setdefault(i, []).append([own, [*corner, c]])
@@ -100,7 +101,7 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
 
 
 def _eliminate(rows: list[list[Any]], count: int) -> list[list[Any]]:
-    """Eliminate the first `count` columns from `rows` in place; the pivot rows leave them."""
+    """Eliminate the first `count` columns from `rows` in place; remove the pivot rows and return them."""
     pivots = []
     for column in range(count):
         sizes = [0.0 if _zero(row[column]) else float(row[column].abs_lower()) for row in rows]
@@ -121,7 +122,7 @@ def _eliminate(rows: list[list[Any]], count: int) -> list[list[Any]]:
 
 
 def _back(pivots: list[list[Any]], count: int, known: list[Any]) -> list[Any]:
-    """Unknowns of `count` pivot rows, the other unknowns being known."""
+    """Solve `count` pivot rows by back substitution; the `known` values are those of all later unknowns."""
     result: list[Any] = [0] * count
     for column in reversed(range(count)):
         row = pivots[column]
@@ -137,4 +138,5 @@ def _back(pivots: list[list[Any]], count: int, known: list[Any]) -> list[Any]:
 
 
 def _zero(value: object) -> bool:
+    """Whether an entry is an exact zero (the only integer that occurs)."""
     return isinstance(value, int)

@@ -1,12 +1,12 @@
 """Existence and local uniqueness: Newton's method at high precision, then the interval Newton operator.
 
-With m the middle of a box X and every real matrix in DF(X) regular,
+If m is the middle of a box X and every real matrix in DF(X) is regular, then
 
     N(X) = m - DF(X)^{-1} F(m)  inside X    implies    exactly one zero of F in X, and it lies in N(X)
 
 (Neumaier, *Interval Methods for Systems of Equations*, theorem 5.1.7: F(x) - F(m) = J (x - m) with J in DF(X), so zeros are fixed
-points of the continuous map x -> m - J(x)^{-1} F(m), which Brouwer's theorem gives inside X; two zeros would make a J singular.)
-F may depend on parameters that are balls: the statement then holds for each of their values.
+points of the continuous map x -> m - J(x)^{-1} F(m), which has one in X by Brouwer's theorem; with two zeros some J would be singular.)
+If F depends on parameters that are balls, the statement holds for each of their values.
 """
 
 from __future__ import annotations
@@ -26,26 +26,27 @@ if TYPE_CHECKING:
 
     from orbits.proofs.elimination import Nodes, Solution
 
-ROUNDS = 8
+ROUNDS = 8  # attempts to find a box of suitable width
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class Box:
-    """A box with exactly one solution in it.
+    """A box that contains exactly one solution.
 
     Attributes
     ----------
     nodes : list (l) of lists (k) of [middle, radius]
-        As decimals.
+        Unknowns of each block, as decimal text.
     extras : list (m) of [middle, radius]
+        Further unknowns.
     """
 
     nodes: list[list[list[str]]]
     extras: list[list[str]]
 
     def balls(self) -> Solution:
-        """The box as balls, at the precision in force."""
+        """Return the box as balls, at the current precision."""
         arb = library().arb
         nodes = [[arb(mid, rad) for mid, rad in node] for node in self.nodes]
         return nodes, [arb(mid, rad) for mid, rad in self.extras]
@@ -58,12 +59,12 @@ class Box:
 
 
 def refine(system: System, nodes: Nodes, extras: Sequence[arb], bits: int) -> Solution:
-    """Newton's method on the middles (of parameters as well) until it stands still.
+    """Refine a solution by Newton's method until it converges; only the middles of all balls are used, also of the parameters.
 
     Raises
     ------
     Obstacle
-        If it leaves the neighbourhood of the start.
+        If a derivative is singular, the iteration leaves the neighbourhood of the start, or does not converge.
     """
     balls = system.p
     system.p = {name: value.mid() for name, value in balls.items()}
@@ -95,19 +96,19 @@ def _newton(system: System, nodes: Nodes, extras: Sequence[arb], bits: int) -> S
 
 
 def _step(system: System, z: Nodes, e: Sequence[arb], Z: Nodes, E: Sequence[arb]) -> Solution:
-    """DF(Z, E)^{-1} F(z, e)."""
+    """Return an enclosure of DF(Z, E)^{-1} F(z, e)."""
     blocks = system.linearise(Z, E)
     blocks.b, blocks.c = system.residuals(z, e)
     return solve(blocks)
 
 
 def enclose(system: System, z: Nodes, e: Sequence[arb], bits: int) -> Box:
-    """A box about (z, e) with exactly one solution in it.
+    """Find a box around (z, e) that contains exactly one solution.
 
     Raises
     ------
     Obstacle
-        If none is found.
+        If no box is found.
     """
     digits = max(24, int(0.3 * bits))
     flat = [v for node in z for v in node] + list(e)
@@ -139,10 +140,12 @@ def enclose(system: System, z: Nodes, e: Sequence[arb], bits: int) -> Box:
 
 
 def _shape(flat: list[T], system: System) -> tuple[list[list[T]], list[T]]:
+    """Split a flat list of all unknowns into those of the blocks and the further ones."""
     k, length = system.k, system.length
     return [flat[k * i : k * i + k] for i in range(length)], flat[k * length :]
 
 
 def _scale(value: arb) -> arb:
+    """Size of an unknown, at least 1."""
     size = value.abs_upper()
     return size if size > 1 else library().arb(1)

@@ -1,6 +1,6 @@
-"""The equations of an orbit as the proofs solve them, block by block, with their derivatives.
+"""The equations of an orbit in proofs, block by block, with their derivatives.
 
-A system is l equations blocks G_i(z_i, z_{i+1}, e) = 0 closed to a cycle, e being further unknowns, and as many border rows.
+A system consists of l blocks G_i(z_i, z_{i+1}, e) = 0, closed to a cycle, and border rows; e are further unknowns, as many as border rows.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ MIRRORED = {"L": "R", "R": "L"}
 
 @dataclass(frozen=True)
 class Motif:
-    """What is solved for: a word, over its whole period or over half of it for a symmetric orbit.
+    """The part of a word that is solved for: all of it, or half of it for a symmetric orbit.
 
     Attributes
     ----------
     machine : str
         A key of `orbits.proofs.flights.NAMES`.
     events : tuple of str
-        Letters of the part that is solved for.
+        Letters of the part.
     modes : tuple of int
-        The mode after each of them.
+        The mode after each event.
     periods : int
         Forcing periods of the whole orbit.
     half : bool
-        The part is half of a symmetric orbit, which its mirror image completes.
+        Whether the part is half of a symmetric orbit; the other half is its mirror image.
     frictionless : bool
-        Flights may reverse freely, and only the walls limit them.
+        Whether the relative velocity may change sign in flights, so that only the walls limit them.
     """
 
     machine: str
@@ -55,36 +55,36 @@ class Motif:
 
     @property
     def node(self) -> int:
-        """Unknowns per event."""
+        """Number of unknowns per event."""
         return 4 if self.machine in MOVING else 2
 
     @property
     def twist(self) -> int:
-        """-1 where the mirror closes the part."""
+        """-1 if the part is closed by the mirror, else 1."""
         return -1 if self.half else 1
 
     @property
     def impact_free(self) -> bool:
-        """Whether no wall is hit."""
+        """Whether the word has no impacts."""
         return not any(letter in WALLS for letter in self.events)
 
     def flights(self, p: Mapping[str, Number]) -> Flights:
-        """The machine's flights with parameters `p`."""
+        """Return the machine's flights with parameters `p`."""
         return Flights(p, self.machine in MOVING)
 
     def arrival(self, i: int) -> tuple[str, int]:
-        """The event that ends flight i, and the mode after it."""
+        """Return the event that ends flight i, and the mode after it."""
         if i + 1 < len(self):
             return self.events[i + 1], self.modes[i + 1]
         letter = self.events[0]
         return (MIRRORED.get(letter, letter) if self.half else letter), self.twist * self.modes[0]
 
     def incoming(self, i: int) -> int:
-        """The mode before event i."""
+        """Return the mode before event i."""
         return self.modes[i - 1] if i > 0 else self.twist * self.modes[-1]
 
     def closing(self, node: Row, p: Mapping[str, Number]) -> list[Any]:
-        """The first node again, at the end of the part; a position is mirrored about the middle between the walls."""
+        """Return the node at the end of the part, which is the first node a period later or its mirror image (about the middle between the walls)."""
         shift = library().arb.pi() * (self.periods if self.half else 2 * self.periods)
         found = [node[0] + shift, *(self.twist * value for value in node[1:])]
         if self.half and self.events[0] not in WALLS and "distance_left" in p:
@@ -92,13 +92,13 @@ class Motif:
         return found
 
     def after(self, i: int, nodes: Sequence[Row], p: Mapping[str, Number]) -> Sequence[Any]:
-        """The node at which flight i ends."""
+        """Return the node at which flight i ends."""
         return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0], p)
 
     def residual(self, i: int, flights: Flights, x: Row, following: Row) -> list[Any]:
-        """The elementary map of flight i, zero where `following` is the node that `x` leads to.
+        """Residual of flight i; zero if the flight that begins at node `x` ends at node `following`.
 
-        At an impact w is at the wall and B+ = v' + r w'; at a turn or stick w' = 0; at a slip the push reaches friction.
+        At an impact w is at the wall and B+ = v' + r w'; at a turn or stick w' = 0; at a slip the push equals the largest friction.
         """
         end = flights.launch(self.events[i], self.modes[i], x)(following[0])
         letter, mode = self.arrival(i)
@@ -115,11 +115,11 @@ class Motif:
 
 
 Border = tuple[int, "Callable[[Row, Row], Number]"]
-"""A border row: the block it reads, and its value from that block's unknowns and the further ones."""
+"""A border row: the block on which it depends, and a function of this block's unknowns and the further ones."""
 
 
 class System:
-    """A square system; this one is the orbit itself at definite parameters.
+    """A square system of equations. This class: an orbit at given parameters; derived classes add unknowns and border rows.
 
     Parameters
     ----------
@@ -134,24 +134,24 @@ class System:
         self.borders: tuple[Border, ...] = ()
 
     def numbers(self, extras: Row) -> Mapping[str, Number]:
-        """The parameters, at these further unknowns."""
+        """Return the parameters, given the further unknowns."""
         return self.p
 
     def prepare(self, extras: Row) -> Flights:
-        """What all blocks share."""
+        """Return the flights, which all blocks share."""
         return self.motif.flights(self.numbers(extras))
 
     def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
-        """Residuals of block i."""
+        """Return the residuals of block i."""
         return self.motif.residual(i, shared, z, following)
 
     def closing(self, z: Row, extras: Row) -> list[Any]:
-        """The unknowns that follow the last block, from those of the first."""
+        """Return the unknowns after the last block, computed from those of the first."""
         return self.motif.closing(z, self.numbers(extras))
 
     # ------------------------------------------------------------------ evaluation
     def residuals(self, nodes: Sequence[Row], extras: Row) -> tuple[list[list[Number]], list[Number]]:
-        """Values of all equations."""
+        """Return the residuals of all blocks and of the border rows."""
         shared = self.prepare(extras)
         values = []
         for i in range(self.length):
@@ -160,7 +160,7 @@ class System:
         return values, [row(nodes[i], extras) for i, row in self.borders]
 
     def linearise(self, nodes: Sequence[Row], extras: Row) -> Blocks:
-        """All derivatives over a box; right sides are zero."""
+        """Return enclosures of all derivatives over a box, with right sides zero."""
         k, m = self.k, self.m
         e = variables(extras, 2 * k)
         shared = self.prepare(e)
@@ -186,14 +186,14 @@ class System:
 
 @dataclass(frozen=True)
 class Varying:
-    """A parameter, and what follows it: number j is ``factor * parameter**exponent``.
+    """A parameter that varies, and the machine's numbers that depend on it as ``factor * parameter**exponent``.
 
     Attributes
     ----------
     name : str
-        As people call it; for a machine in physical units a quantity, counted in its unit.
+        Name of the parameter; for a machine in physical units a quantity in its unit.
     numbers : dict of str to (str, int or float)
-        By the machine's number: the factor, an exact decimal, and the exponent.
+        Name of the machine's number -> (factor as an exact decimal, exponent).
     """
 
     name: str
@@ -204,7 +204,7 @@ class Varying:
     @overload
     def at(self, value: Jet) -> dict[str, Jet]: ...
     def at(self, value: Number) -> Mapping[str, Number]:
-        """The numbers that move, at a value of the parameter (a ball or a jet)."""
+        """Return the numbers that depend on the parameter, at one value of it (a ball or a jet)."""
         return {
             number: power(value, exponent) if factor == "1" else ball(factor) * power(value, exponent)
             for number, (factor, exponent) in self.numbers.items()

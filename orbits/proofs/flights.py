@@ -1,19 +1,20 @@
-"""Flights in closed form over any numbers (balls, jets): the machines as the proofs see them.
+"""Closed forms of flights for proofs, over any kind of numbers (balls, jets).
 
-Written anew from the equations of motion, not from the compiled kernels: a proof must not inherit their slips. A flight
-starts at a node and gives the motion at any forcing phase Psi; t = (Psi - Psi_0)/Omega is the time since its start.
+They are derived from the equations of motion independently of the compiled kernels, so that a proof does not contain errors of these. A flight
+starts at a node and returns the motion at any forcing phase Psi; t = (Psi - Psi_0)/Omega is the time since its start.
 
 Shaken cavity (`absorber`, `cavity`): v = C sin Psi and, in mode s,
 
     w'' = push - s a,    push = v'' + bias,    v'' = -C Omega^2 sin Psi,
 
-with a = (1 + eps) mu g cos(slope), mu depending on the direction, and bias = -(1 + eps) g sin(slope) (the slope pulls to the right).
+with a = (1 + eps) mu g cos(slope), where mu depends on the direction of sliding, and bias = -(1 + eps) g sin(slope) (gravity pulls to the right).
 
 Absorber on its oscillator (`coupled`), e = eps G sin Psi:
 
     q1'' + eps lambda q1' + q1 = e + chi eps lambda e' - eps q2'',    q2'' = mu g cos(slope) s + g sin(slope),
 
-so q1, counted from where all is at rest, is a harmonic of the forcing, a constant and a damped oscillation; stuck, both move as one mass 1 + eps.
+so q1, measured from the position of rest, is the sum of a harmonic of the forcing, a constant and a damped oscillation. While the absorber
+sticks, both move as one mass 1 + eps.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ WALLS = {"L": 1, "R": -1}
 
 @dataclass(frozen=True)
 class Motion:
-    """The motion at one instant: w with three rates, what pushes against friction with two, v and its rate."""
+    """The motion at one instant: w with three time derivatives, the push against friction with two, v with one."""
 
     w: Any
     w1: Any
@@ -50,16 +51,17 @@ Flight = Callable[["Number"], Motion]
 
 
 class Flights:
-    """A machine with definite parameters; node (Psi, B+) at impacts, (Psi, w) elsewhere, and v, v' where the cavity has a motion of its own.
+    """Flights of a machine with given parameters.
 
-    A shaken cavity is the coupled machine with eps = 0, q1 = v = C sin Psi whatever the absorber does, and q2 counted 1 + eps times.
+    A node is (Psi, B+) at an impact and (Psi, w) at other events; it also contains v and v' if the cavity has a motion of its own.
+    A shaken cavity is treated as the coupled machine with eps = 0, with q1 = v = C sin Psi independent of the absorber, and q2 multiplied by 1 + eps.
 
     Attributes
     ----------
     limit : dict
-        Largest relative acceleration by friction against sliding in mode +1, -1.
+        Mode (+1, -1) -> largest relative acceleration by friction against sliding in this mode; 0 -> 0.
     room : dict
-        Distance of the left (+1) and of the right wall (-1) from w = 0.
+        Side -> distance of the left (+1) and of the right wall (-1) from w = 0.
     """
 
     def __init__(self, p: Mapping[str, Any], moving_cavity: bool) -> None:
@@ -84,11 +86,11 @@ class Flights:
         self._responses: dict[bool, tuple[Any, Any, Any, Any]] = {}
 
     def restitution(self, letter: str) -> Number:
-        """Newton's coefficient of the wall."""
+        """Coefficient of restitution of the wall."""
         return self._restitution[letter]
 
     def _response(self, stuck: bool) -> tuple[Any, Any, Any, Any]:
-        """X, Y of the forced response X sin Psi + Y cos Psi of q1, and decay alpha and angular frequency beta of the free one."""
+        """Return X, Y of the forced response X sin Psi + Y cos Psi of q1, and decay rate alpha and angular frequency beta of its free oscillation."""
         p = self.p
         if not self.moving_cavity:
             return p["amplitude"], 0, 0, 0
@@ -107,7 +109,7 @@ class Flights:
         return self._responses[stuck]
 
     def launch(self, letter: str, mode: int, node: Row) -> Flight:
-        """The flight in `mode` that begins with event `letter` at `node`."""
+        """Return the flight in `mode` that begins with event `letter` at `node`, as a function of the phase."""
         phase0, y = node[:2]
         eps, omega, whole = self.eps, self.omega, self.whole
         X, Y, alpha, beta = self._response(mode == 0)
@@ -152,7 +154,7 @@ class Flights:
         return flight
 
     def resting(self, phase: Number) -> tuple[Any, Any]:
-        """The push on the stuck absorber in steady state, and its rate."""
+        """Return the push on the stuck absorber in the steady state, and its time derivative."""
         s, c = sin_cos(phase)
         X, Y, _, _ = self._response(True)
         size = -self.whole * self.omega * self.omega
@@ -160,7 +162,7 @@ class Flights:
 
 
 def wall(flights: Flights, letter: str) -> Number:
-    """Where the absorber hits at an impact."""
+    """Position w of the absorber at an impact."""
     side = WALLS[letter]
     return side * flights.room[side]
 
@@ -180,7 +182,7 @@ NAMES: dict[str, tuple[str, ...]] = {
 
 
 def parameter_names(machine: str) -> tuple[str, ...]:
-    """The numbers that a machine's flights depend on.
+    """Return the names of the numbers on which a machine's flights depend.
 
     Raises
     ------

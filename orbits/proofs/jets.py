@@ -1,7 +1,7 @@
-"""Forward derivatives over any numbers: balls, or jets again.
+"""Forward automatic differentiation over balls, or over jets again.
 
-A `Jet` is a value and its partial derivatives, kept sparse. Evaluated at balls, every partial derivative is an enclosure of the
-derivative over the whole box (the chain rule holds for sets). Nested, they give second derivatives.
+A `Jet` is a value and its partial derivatives (sparse). Evaluated at balls, every partial derivative is an enclosure of the
+derivative over the whole box, because the chain rule holds for sets. Nested jets give second derivatives.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Jet:
         self.partials = partials
 
     def chain(self, value: Number, slope: Number) -> Jet:
-        """f(self) from f and f' at the value."""
+        """Return f(self), given f and f' at the value."""
         return Jet(value, {i: slope * part for i, part in self.partials.items()})
 
     def __add__(self, other: Number | float) -> Jet:
@@ -109,7 +109,7 @@ def sqrt(x: Number) -> Number:
 
 
 def power(x: Number, exponent: int | float) -> Number:
-    """A power of a ball or a jet; for exponents that are no whole numbers of a positive one."""
+    """A power of a ball or a jet; with a fractional exponent, of a positive one."""
     if exponent == 1:
         return x
     if not isinstance(x, Jet):
@@ -118,22 +118,22 @@ def power(x: Number, exponent: int | float) -> Number:
 
 
 def base(x: Number) -> arb:
-    """The ball at the bottom of a jet of any depth."""
+    """Innermost value of a nested jet."""
     while isinstance(x, Jet):
         x = x.value
     return x
 
 
 def variables(values: Iterable[Number], first: int = 0) -> list[Jet]:
-    """Independent variables numbered from `first`, at the given values."""
+    """Return independent variables with these values, numbered from `first`."""
     return [Jet(value, {first + i: one(value)}) for i, value in enumerate(values)]
 
 
 def one(like: Number) -> arb:
-    """The number 1 of the same kind of balls."""
+    """Return 1 as a ball of the same type."""
     return type(base(like))(1)
 
 
 def partial(x: Number, index: int) -> Number | int:
-    """Derivative with respect to one variable; 0 where there is no dependence."""
+    """Derivative with respect to one variable; the integer 0 if `x` does not depend on it."""
     return x.partials.get(index, 0) if isinstance(x, Jet) else 0

@@ -1,15 +1,15 @@
-"""Borders seen from the side where a flight or an impact has shrunk to nothing, rewritten to the word without it.
+"""Rewrite a border at which a flight has duration zero (or an impact has speed zero) to the shorter word without it.
 
-There the equations of the longer word are singular, those of the other one are not: it is the same motion.
+Both words describe the same motion, but there the equations of the longer word are singular and those of the shorter word are regular.
 
 =========  ==============================  ======================================
-events     at one instant                  becomes
+events     at the border                   rewritten to
 =========  ==============================  ======================================
-``t s``    a turn just before a stick      ``s``, friction just holding
-``t t``    two turns                       none, a flight that touches w' = 0
-``u s``    a slip that stops at once       none, a stick that just holds inside
-``s u``    a stick of no time              ``t`` just turning; none, a flight that touches w' = 0, where it goes on as before
-``L``      an impact without speed         ``t`` at the wall; without friction none, a flight that touches the wall
+``t s``    a turn just before a stick      ``s`` with vanishing friction margin
+``t t``    two turns at one instant        no event: a flight that touches w' = 0
+``u s``    a slip that stops at once       no event: a stick whose friction margin vanishes inside
+``s u``    a stick of duration zero        ``t`` with vanishing margin; if sliding continues in the same direction, no event: a flight that touches w' = 0
+``L``      an impact of speed zero         ``t`` at the wall; without friction no event: a flight that touches the wall
 =========  ==============================  ======================================
 """
 
@@ -31,17 +31,20 @@ Merged = tuple[Motif, np.ndarray, tuple[str, int]]
 def merged(
     motif: Motif, nodes: np.ndarray, margin: tuple[str, int], room: Mapping[int, float]
 ) -> Merged | None:
-    """The shorter word, its nodes and the margin that vanishes; None where nothing has shrunk to nothing.
+    """Return the shorter word, its nodes and its vanishing margin; None if there is no flight of duration zero or impact of speed zero.
 
-    A word with no events left is the stuck absorber.
+    If no events are left, the shorter word is the stuck absorber.
 
     Parameters
     ----------
-    motif, nodes : the longer word, and the nodes (l, n) of its part.
+    motif : Motif
+        The longer word.
+    nodes : float array (l, n)
+        Its nodes.
     margin : (str, int)
-        The margin that vanishes there, and its event.
+        Name and event of the margin of the longer word that vanishes.
     room : dict
-        Distance of the left (1) and of the right wall (-1).
+        Side -> distance of the left (1) and of the right wall (-1) from w = 0.
     """
     name, event = margin
     if name == "approach":
@@ -67,6 +70,7 @@ def merged(
 
 
 def _grazing(motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float]) -> Merged | None:
+    """Rewrite an impact of speed zero, event i."""
     if motif.frictionless:
         motif, nodes, i = _inwards(motif, nodes, i, room)
         return _without(motif, nodes, [i], ("reversal", i - 1)) if i > 0 else None
@@ -79,7 +83,7 @@ def _grazing(motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float])
 def _inwards(
     motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float]
 ) -> tuple[Motif, np.ndarray, int]:
-    """The word begun elsewhere, so that places i and i + 1 are neither its first nor beyond its last, if it is long enough."""
+    """Rotate the word until event i is not the first one and event i + 1 exists, if it is long enough; return word, nodes and the new i."""
     for _ in range(len(motif)):
         if i > 0 and i + 1 < len(motif):
             break
@@ -100,6 +104,7 @@ def _inwards(
 
 
 def _pair(motif: Motif, nodes: np.ndarray, i: int) -> str:
+    """Return the letters of event i and the next one if they form one of `PAIRS` at one instant, else an empty text."""
     last = i + 1 == len(motif)
     turn = np.pi * motif.periods * (1 if motif.half else 2)
     span = nodes[0, 0] + turn - nodes[i, 0] if last else nodes[i + 1, 0] - nodes[i, 0]
@@ -108,6 +113,7 @@ def _pair(motif: Motif, nodes: np.ndarray, i: int) -> str:
 
 
 def _without(motif: Motif, nodes: np.ndarray, places: Sequence[int], margin: tuple[str, int]) -> Merged:
+    """Remove the events `places`; `margin` is the margin of the shorter word that vanishes."""
     keep = [i for i in range(len(motif)) if i not in places]
     shorter = replace(
         motif, events=tuple(motif.events[i] for i in keep), modes=tuple(motif.modes[i] for i in keep)

@@ -1,4 +1,4 @@
-"""Why a proof did not come about: the step, the place and what would help, as data; text last."""
+"""Reasons for a failed proof as data: the step, the event and a remedy; their text is made last."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 
 class ProofError(ValueError):
-    """A proof that cannot be begun; the sentence says why and a way out."""
+    """A proof cannot begin; the message gives the reason and a way out."""
 
 
 class Step(Enum):
-    """A step of a proof, with its name."""
+    """A step of a proof; the value is its text."""
 
     REFINEMENT = "Newton's method at high precision"
     EXISTENCE = "existence"
@@ -22,7 +22,7 @@ class Step(Enum):
 
 
 class Remedy(Enum):
-    """What would help."""
+    """A remedy for a failed step; the value is its text."""
 
     BITS = "more bits would help (bits=...)"
     START = "nodes nearer to an orbit would help: solve for the orbit first"
@@ -36,7 +36,7 @@ class Remedy(Enum):
 
 @dataclass(eq=False)
 class Obstacle(Exception):
-    """The step that failed, where, and what would help."""
+    """A failed step of a proof: the step, a remedy, the event at which it failed (if it has one), and details."""
 
     step: Step
     remedy: Remedy
@@ -49,7 +49,7 @@ class Obstacle(Exception):
         return f"{self.step.value}{at} was not proved{why}; {self.remedy.value}"
 
     def to_dict(self) -> dict[str, Any]:
-        """The obstacle for JSON."""
+        """Return the obstacle as a dict for JSON."""
         return {
             "step": self.step.name.lower(),
             "remedy": self.remedy.name.lower(),
