@@ -86,7 +86,7 @@ class Closing:
         return None
 
 
-# a branch escapes only if this many doublings of its distance, as fast as the last one, fit into the rest of the interval
+# a branch escapes if this many doublings of its distance, as fast as the last one, fit into the rest of the interval,
 DOUBLINGS = 26
 # or if the parameter's change during a doubling is less than SHRINKS of that before, and than SMALL of the interval
 SHRINKS, SMALL = 0.5, 0.05
