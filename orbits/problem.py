@@ -1,7 +1,7 @@
-"""OrbitProblem: the orbits with one word as solutions of F(u, p) = 0, as a continuation code wants them.
+"""OrbitProblem: the orbits with one word as solutions of F(u, p) = 0, for continuation.
 
-A symmetric orbit is solved for on half its word, closed by the mirror: half the work, no branch point at its symmetry
-breaking (there a multiplier of the half map passes -1), and a classification that is exact.
+A symmetric orbit is solved on half its word and closed by the mirror. This halves the work, makes a symmetry breaking no branch point
+(a multiplier of the half map passes -1), and classifies it exactly.
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ class OrbitProblem(Motions):
     periods : int
         Forcing periods k of the whole cycle; 1 for a self-excited machine, whose period is unknown.
     parameter : str
-        Name of the parameter that varies.
+        Name of the varying parameter.
     params : float array (P,)
-        Parameter vector; what `parameter` moves in it is the starting value only.
+        Parameter vector; its value of `parameter` is only a starting value.
     symmetric : bool
         Solve for symmetric orbits, on half the word.
     units : (float, float), optional
-        Length and rate in which the unknowns are counted; those of the machine's own size if left out.
+        Units of length and rate of the unknowns; by default those of the machine's own size.
 
     Raises
     ------
     ValueError
-        If the parameter is unknown, or `symmetric` is asked of a word whose halves are not mirror images.
+        If the parameter is unknown, or `symmetric` is set for a word whose halves are not mirror images.
     """
 
     spectrum = "map"
-    # unknowns are counted in units of the machine's own size, equations exact to roundoff and smooth between the borders:
-    # there is nothing to learn, to doubt or to explain
+    # unknowns have units of the machine's own size; equations are exact to roundoff, and smooth between the borders:
+    # no scales have to be learned, and no noise to be estimated
     detection = ""
     scales = None
     scales_learned = False
@@ -87,23 +87,23 @@ class OrbitProblem(Motions):
     # ------------------------------------------------------------------ numerics
     @property
     def kernels(self) -> CycleKernels:
-        """linearise, bordered, inspect: compiled, but for the empty word."""
+        """The kernels: linearise, bordered, inspect."""
         return self.equations.kernels
 
     def workspace(self) -> tuple[np.ndarray, ...]:
-        """Arrays for the kernels."""
+        """Return new arrays for the kernels."""
         return self.equations.workspace()
 
     @property
     def parameters(self) -> dict[str, float]:
-        """All parameters that may vary, by name; of the one that does the starting value."""
+        """All parameters that can vary, by name; for the varying one its starting value."""
         return {
             name: float(value)
             for name, value in zip(self.model.amount_names, self.model.amounts(self.params))
         }
 
     def against(self, parameter: str, values: Mapping[str, float] | None = None) -> OrbitProblem:
-        """The same orbits against another parameter, with other values of some parameters."""
+        """Return the problem of the same orbits against another parameter, with new values of some parameters."""
         params = self.params
         for name, value in (values or {}).items():
             params = along(self.model.path(name, params), params, float(value))
@@ -112,11 +112,11 @@ class OrbitProblem(Motions):
         )
 
     def values(self, p: float | np.ndarray) -> np.ndarray:
-        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
+        """Return the parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
         return self.equations.values(p)
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
-        """Typical sizes of the unknowns, 1 unless the machine knows others, and of the parameter, shape (N + 1,)."""
+        """Return typical sizes of the unknowns (1 unless the machine gives others) and of the parameter, shape (N + 1,)."""
         scale = np.ones(self.dimension + 1)
         sizes = self.model.sizes(self.params)
         if sizes is not None:
@@ -124,53 +124,53 @@ class OrbitProblem(Motions):
         return scale
 
     def value(self, params: np.ndarray) -> float:
-        """The value of the parameter that varies in a parameter vector."""
+        """Return the value of the varying parameter in a parameter vector."""
         return self.equations.value(params)
 
     def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter of the machine cannot have; see `Model.check_value`."""
+        """Raise ParameterError for an impossible value of a parameter; see `Model.check_value`."""
         self.model.check_value(name, value)
 
     def margin_kind(self, j: int) -> str:
-        """Kind of the border at which margin `j` vanishes."""
+        """Return the kind of border at which margin `j` vanishes."""
         return border_kind(self.word, j)
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        """Return the multipliers of the full period from those of the closure map (of half a period: their squares)."""
         return self.equations.to_multipliers(spectrum)
 
     def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> None:
-        """A measure at every point of a cycle: those of a motion have no order."""
+        """Return None: measures belong to the whole motion."""
         return None
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
-        """Why a branch ends where Newton's method fails."""
+        """Return the reason for the end of a branch at which Newton's method fails; empty here."""
         return ""
 
     def uncertainty(self) -> float:
-        """Relative accuracy of the equations."""
+        """Return the relative accuracy of the equations: 0, they are exact to roundoff."""
         return 0.0
 
     def check(self, u: np.ndarray, p: float) -> None:
-        """What is wrong with the derivatives at a solution."""
+        """Return None: derivatives are not given by users."""
         return None
 
     # ------------------------------------------------------------------ shapes
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
-        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N), at parameter values `p`, shape (...)."""
+        """Return the nodes of the whole cycle, shape (..., L, n), from unknowns, shape (..., N), at parameter values `p`, shape (...)."""
         return self.equations.expand(u, p)
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
-        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        """Return the unknowns, shape (N,), from the nodes of the whole cycle."""
         return self.equations.reduce(nodes)
 
     def middle(self, p: float) -> float:
-        """w in the middle between the walls."""
+        """Return w in the middle between the walls."""
         return float(self.model.middle(self.values(p)))
 
     @property
     def image_offset(self) -> Callable[[float], np.ndarray] | None:
-        """Twice the middle between the walls, in the places of positions; None where it is w = 0 at all parameter values."""
+        """Twice the middle between the walls in the entries of positions, as a function of p; None if it is always w = 0."""
         began = self.equations.began
         if not (self.middle(began) or self.middle(1.5 * began)):
             return None
@@ -181,7 +181,7 @@ class OrbitProblem(Motions):
 
     # ------------------------------------------------------------------ larger and smaller problems
     def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
-        """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
+        """Return the problem of the shortest orbit that `u` repeats, and its unknowns there; None if `u` repeats none."""
         if len(self.word) and self.word.repetitions == 1:
             return None
         root = self.orbit(u, p).root()
@@ -193,20 +193,20 @@ class OrbitProblem(Motions):
     def sibling(
         self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> OrbitProblem:
-        """The problem of another word of the same machine against the same parameter; on half the word only where the machine has a mirror image."""
+        """Return the problem of another word of the machine, against the same parameter; symmetric only if the machine has a mirror image."""
         own, half = self.params if params is None else params, symmetric and self.mirrored
         return OrbitProblem(self.model, word, periods, self.parameter, own, half, self.units)
 
     def beyond(self, point: BorderPoint) -> Sequence[Seed]:
-        """The orbits on the other side of a border, with the words that physics writes."""
+        """Return the orbits on the other side of a border, with the words that the laws of the contacts give."""
         return [self._smoothly(seed) for seed in cross(self, point)]
 
     def onward(self, point: BorderPoint) -> Sequence[Seed]:
-        """Of these what needs no switch alone; orbits of another period or symmetry only where nothing else is found."""
+        """Return the orbits beyond a border that need no switch; those of another period or symmetry only if there are no others."""
         return [self._smoothly(seed) for seed in cross(self, point, every=False)]
 
     def _smoothly(self, seed: Seed) -> Seed:
-        """The seed; self-excited motions without events go on as cycles of a smooth flow."""
+        """Return the seed; a self-excited motion without events becomes a cycle of a smooth flow."""
         if self.forced or len(seed.problem.word) or not seed.problem.word.modes:
             return seed
         from orbits.flows.page.smooth import cycles_of
@@ -219,15 +219,14 @@ class OrbitProblem(Motions):
         return seed._replace(problem=problem, u=cycle.u, tangent=tangent)
 
     def dead_end(self, point: BorderPoint) -> str:
-        """Why no motion was found on the other side of a border; empty where the reason is not known."""
+        """Return the reason why no motion was found on the other side of a border; empty if unknown."""
         return dead_end(self, point)
 
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
-        """Key and vector that are equal for one orbit in all its descriptions.
+        """Return a key and a vector that are equal for all descriptions of one orbit.
 
-        Rotations of the word, shifts by whole forcing periods, the mirror image and repetitions of a shorter orbit
-        are one orbit.
+        Descriptions of one orbit differ by rotation of the word, by whole forcing periods, by the mirror image, and by repetition.
         """
         nodes = self.expand(u, p)
         if not len(nodes):
@@ -235,7 +234,7 @@ class OrbitProblem(Motions):
         middle = self.middle(p)
         if middle:
             nodes = nodes.copy()
-            nodes[self.word.codes > 1, 1] -= middle  # from where an image has the opposite sign
+            nodes[self.word.codes > 1, 1] -= middle  # an image then has the opposite sign
         if self.units != PLAIN:
             nodes = nodes / self.equations.unit
         sizes = self.model.sizes(self.values(p))
@@ -245,14 +244,14 @@ class OrbitProblem(Motions):
         return canonical(self.word, self.periods, nodes, mirrored, forced=self.forced, same=same)
 
     def same_motion(self, u: np.ndarray, p: float, other: object, v: np.ndarray) -> bool:
-        """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
+        """Return whether a solution of another problem at the same parameter value is this motion, or its mirror image.
 
-        At a border one motion has several words, so that `canonical` cannot tell.
+        It compares positions, because at a border one motion has several words, and `canonical` cannot compare them.
         """
         if not isinstance(other, OrbitProblem) or other.model.name != self.model.name:
             return False
         one, another = self.orbit(u, p), other.orbit(v, p)
-        # motions that are one at a few instants are one at all, and hardly ever one is the other's image
+        # a few instants decide; the mirror image is compared only if the motions differ
         same = self.flow.resolution
         return distance(one, another, instants=INSTANTS) <= same or (
             self._mirrored_at(p) and distance(one, another, mirror=True, instants=INSTANTS) <= same
@@ -264,37 +263,37 @@ class OrbitProblem(Motions):
     # ------------------------------------------------------------------ for people
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Measures that this machine's orbits have."""
+        """Names of the measures of this machine's orbits."""
         return self.flow.measure_names(self.model)
 
     @property
     def angles(self) -> tuple[str, ...]:
-        """Measures that are angles: they jump by 2 pi without a jump of the orbit."""
+        """Measures that are angles: a jump by 2 pi is no jump of the orbit."""
         return self.flow.angles
 
     @property
     def default_measure(self) -> str:
-        """The measure that a diagram shows when none is asked for."""
+        """The default measure of diagrams."""
         return self.flow.default_measure(self.model)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
+        """Return measures of many solutions at once, each of shape (m,): `u` has shape (m, N), `p` shape (m,)."""
         p = np.atleast_1d(np.asarray(p, dtype=float))
         nodes = self.expand(np.atleast_2d(u), p)
         return self.flow.measures(self.model, self.word, self.periods, nodes, self.values(p), names)
 
     def orbit(self, u: np.ndarray, p: float) -> Orbit:
-        """The solution as an `orbits.orbit.Orbit`."""
+        """Return the solution as an `orbits.orbit.Orbit`."""
         nodes = self.expand(u, p)
         nodes = nodes if len(self.word) else nodes[:1]
         return Orbit(self.model, self.word, self.periods, nodes, self.values(p))
 
     def amplitude(self, direction: np.ndarray) -> float:
-        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        """Return the length of a direction for normal forms: Euclidean, over the first node."""
         return float(np.linalg.norm(direction[: self.dimension // max(self.length, 1)]))
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
-        """Largest deviation of the event-driven simulation from the orbit over its period."""
+        """Return the largest deviation of the event-driven simulation from the orbit over its period."""
         return self.orbit(u, p).replay()
 
     def prove(self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None):
@@ -304,11 +303,11 @@ class OrbitProblem(Motions):
         return of_point(self, kind, u, p, margin, bits)
 
     def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]:
-        """What one of these coordinates of a motion (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; empty for a machine of plain numbers."""
+        """Return, by name of coordinate (w, w_rate, v, v_rate), the size of one in the shown unit, and this unit; empty without units."""
         return self.model.gauges(names, self.values(p))
 
     def population(self, over: str | None = None, **parameters: float):
-        """Starts of this machine and what they settle on; see `orbits.population.Population`."""
+        """Return starts of this machine; see `orbits.population.Population`."""
         over = over or self.parameter
         numbers = self.model.named(self.params)
         values = {**numbers, **parameters}
@@ -321,7 +320,7 @@ class OrbitProblem(Motions):
 
     @property
     def spelling(self) -> str:
-        """The word as printed: one spelling for one motion; `word` begins where the nodes do."""
+        """The word as printed: one spelling for one motion; `word` itself begins at the first node."""
         return self.word.spelled(self.mirrored)
 
     @property
@@ -343,7 +342,7 @@ class OrbitProblem(Motions):
         return of_branch(self, points, values, marks, within, special)
 
     def describe(self) -> dict[str, Any]:
-        """A description that `rebuild` understands, ready for JSON."""
+        """Return a JSON-able description, from which `rebuild` makes the problem again."""
         unnamed = "stuck" if not self.word.modes else "no events"
         return {
             "factory": "orbits.problem:rebuild",
@@ -362,15 +361,15 @@ class OrbitProblem(Motions):
 
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem | None:
-    """The problem that `OrbitProblem.describe` described.
+    """Return the problem that `OrbitProblem.describe` described; None if its machine file must not be executed.
 
-    A declared machine that this process has already is taken as it is. Else its machine file has to be run: only with `trust`; without it the
-    answer is None. The other machines are data.
+    Built-in machines are rebuilt from data. A declared machine is taken from this process if it exists here. Otherwise its machine file has to
+    be executed, which needs `trust`.
 
     Raises
     ------
     PageChanged
-        If the machine file is gone or has changed.
+        If the machine file is missing or has changed.
     """
     settings, params = description["model"], np.array(description["params"], dtype=float)
     if "page" in settings:
@@ -388,5 +387,5 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
         description["parameter"],
         model.completed(params),
         bool(description["symmetric"]),
-        tuple(description.get("counted_in", PLAIN)),  # older files count in the machine's own units
+        tuple(description.get("counted_in", PLAIN)),  # in older files unknowns have the machine's own units
     )

@@ -1,6 +1,6 @@
-"""What an orbit problem hands to a continuation code: symmetries, larger problems, seeds of branches, and what it says of other motions.
+"""The problem of one word's orbits, as borders and continuation use it: symmetries, larger problems, and other motions of the machine.
 
-The same for every machine: closed form or declared, forced or self-excited.
+It is the same for built-in and declared, forced and self-excited machines.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class BorderPoint(Protocol):
-    """What a problem is given of a special point at a border."""
+    """A special point at a border, as problems receive it."""
 
     @property
     def u(self) -> np.ndarray: ...
@@ -37,7 +37,7 @@ class BorderPoint(Protocol):
 
 
 class CycleProblem(Protocol):
-    """What borders, and answers about other motions, ask of the problem of the cycles with one word (`orbits.problem.OrbitProblem`)."""
+    """The part of a problem (`orbits.problem.OrbitProblem`) that borders and searches for other motions need."""
 
     model: Any
     flow: Flow
@@ -79,10 +79,20 @@ class CycleProblem(Protocol):
 
 
 class Symmetry(NamedTuple):
-    """An image of a solution that solves the same problem; `root` reduces a solution that is its own image.
+    """An image of a solution that solves the same problem.
 
-    `kind_at` tells the kind of the points where that depends on the solution; of machines it never does. `offset` (p) is added to
-    the image, where the middle between the walls is not at w = 0.
+    Attributes
+    ----------
+    kind : str
+        Kind of the branch points at which the symmetry breaks.
+    apply : callable
+        Unknowns -> unknowns of the image.
+    root : callable or None
+        Reduces a solution that is its own image to (smaller problem, its unknowns).
+    kind_at : callable or None
+        Kind of the points, if it depends on the solution; never for machines.
+    offset : callable or None
+        Parameter value -> vector added to the image, if the middle between the walls is not at w = 0.
     """
 
     kind: str
@@ -93,7 +103,7 @@ class Symmetry(NamedTuple):
 
 
 class Embedding(NamedTuple):
-    """A solution seen in a larger problem, in which it is a branch point."""
+    """A solution in the unknowns of a larger problem, in which it is a branch point."""
 
     problem: object
     u: np.ndarray
@@ -102,7 +112,7 @@ class Embedding(NamedTuple):
 
 
 class Seed(NamedTuple):
-    """Where the branch on the other side begins; `tangent` leads away from the border."""
+    """Begin of the branch beyond a border; `tangent` leads away from the border."""
 
     problem: CycleProblem
     u: np.ndarray
@@ -114,12 +124,12 @@ class Seed(NamedTuple):
 
 
 class Motions(CycleProblem):
-    """Answers of the problem of a word about other motions of its machine."""
+    """Part of the problem of a word that concerns other motions of its machine."""
 
     # ------------------------------------------------------------------ images, larger and smaller problems
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:
-        """Images of a solution of the full word: the mirror some places on, and a doubled word's shift by its half."""
+        """Images of a solution of the full word: mirror images shifted along the word, and the shift of a doubled word by its half."""
         return self._images
 
     @cached_property
@@ -139,7 +149,7 @@ class Motions(CycleProblem):
     def _root(
         self, word: Word, periods: int, symmetric: bool
     ) -> Callable[[np.ndarray], tuple[CycleProblem, np.ndarray]]:
-        """Takes a solution that is its own image to the problem of a shorter word, made when it is first asked for, and there."""
+        """Return a function that takes a solution which is its own image to (problem of a shorter word, its unknowns there)."""
         made = cache(lambda: self.sibling(word, periods, symmetric))
         return lambda u: (made(), made().reduce(self.expand(u)))
 
@@ -151,9 +161,9 @@ class Motions(CycleProblem):
         )
 
     def _mirror_places(self) -> list[int]:
-        """Rotations that make the word its mirror image, an odd number of half forcing periods on, the least first.
+        """Return the rotations that make the word its mirror image, an odd number of half forcing periods later, smallest first.
 
-        A word that repeats a shorter one has several: its motions may be symmetric as a whole, or repeat a symmetric motion.
+        A word that repeats a shorter one has several: its motions can be symmetric as a whole, or repeat a symmetric motion.
         """
         mirror, n = self.word.mirror(), self.length
         found = []
@@ -168,7 +178,7 @@ class Motions(CycleProblem):
         return found
 
     def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
-        """Nodes some places on, at the same phase again, their states times `sign`."""
+        """Return the unknowns with the nodes rotated, phases shifted to the first interval, and states multiplied by `sign`."""
         nodes = self.expand(u)
         image = np.concatenate([nodes[places:], nodes[:places]])
         image[:, 1:] *= sign
@@ -181,7 +191,7 @@ class Motions(CycleProblem):
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
-        """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
+        """Return the larger problem in which a symmetry breaking or period doubling is a branch point, with this point in its unknowns."""
         along = np.asarray(tangent[:-1])
         if kind == "symmetry-breaking" and self.symmetric:
             full = self.sibling(self.word, self.periods, symmetric=False)
@@ -203,13 +213,13 @@ class Motions(CycleProblem):
 
     # ------------------------------------------------------------------ by simulation
     def simulated_attractors(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
-        """What the machine settles on at a parameter value, simulated from rest and from random starts.
+        """Return the attractors of the machine at a parameter value, simulated from rest and from random starts.
 
         Returns
         -------
         list of dict
-            "word" (None where there is none), "periods" and "kind" of each motion and "share" of the starts that lead to it, sorted; of
-            one that does not recur "modulation" and its band, too (see `contvines.shared.motions`), where it has one.
+            "word" (or None), "periods" and "kind" of each motion, and "share" of the starts that lead to it, sorted. A motion that does
+            not recur also has "modulation" and its band (see `contvines.shared.motions`), if they are defined.
         """
         from orbits.attractors.attractor import modulated
         from orbits.attractors.search import met
@@ -229,12 +239,12 @@ class Motions(CycleProblem):
         return [found[key] for key in sorted(found)]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable motion as `simulated_attractors` lists it."""
+        """Return a stable motion in the form of `simulated_attractors`."""
         kind = self.flow.kind(self.orbit(u, p))
         return {"word": self.word.canonical().spelled(), "periods": self.periods, "kind": kind}
 
     def section(self, p: float) -> Section:
-        """Its motions by simulation, once per period of the cycle.
+        """Return the Poincare section of this word: its motions by simulation, once per period of the cycle.
 
         Raises
         ------

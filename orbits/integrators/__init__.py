@@ -1,6 +1,11 @@
-"""Flights of declared machines: symbols in, integrators out. `expressions` is what both integrators share; `engine` says which one is used.
+"""Integration of the flights of declared machines, from symbolic formulas.
 
-An integrator offers functions compiled for many points at once (`Values`), flights with their sensitivities, one by one (`Flight`) or, where `LANES` is
-above 1, so many at once (`Flights`), flights that report every rise of given functions through zero (`Watch`), and flights that end at the first fall (`Run`).
-A function that begins at zero, or below it by roundoff, and rises from there has not fallen.
+`expressions` treats formulas for both integrators; `engine` selects the integrator. An integrator offers:
+
+- `Values`: functions compiled for many points at once;
+- `Flight`: flights with derivatives by state and parameter, one at a time; `Flights`: `LANES` of them at once, if `LANES` is above 1;
+- `Watch`: flights that report every rise of given functions through zero;
+- `Run`: flights that end at the first fall of one of the functions through zero.
+
+A function that begins at zero, or below it by roundoff, and rises from there does not count as falling.
 """

@@ -1,4 +1,4 @@
-"""Which integrator integrates declared machines: heyoka, or scipy where heyoka is not installed or `CONTVINES_PAGES=scipy` asks for it."""
+"""Choice of the integrator of declared machines: heyoka, or SciPy if heyoka is missing or `CONTVINES_PAGES=scipy` is set."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from contvines.shared.on_demand import pip_install
 HOW = "{0} (Linux), or conda install heyoka.py -c conda-forge (macOS, Windows)"
 
 MODULES = {"heyoka": "heyoka", "scipy": "solve_ivp"}
-"""Names of the integrators, as `CONTVINES_PAGES` says them, and their files."""
+"""Values of `CONTVINES_PAGES`, and the modules of the integrators."""
 
 
 class EngineMissing(ImportError):
-    """The integrator asked for is not installed."""
+    """The requested integrator is not installed."""
 
 
 @cache
 def engine() -> ModuleType:
-    """The module with `Values`, `Flight`, `Flights`, `Watch` and `Run`; what each does is said in `orbits.integrators`.
+    """Return the module with `Values`, `Flight`, `Flights`, `Watch` and `Run`, as `orbits.integrators` describes them.
 
     Raises
     ------
     EngineMissing
-        If `CONTVINES_PAGES` names an integrator that is not installed, or none.
+        If `CONTVINES_PAGES` names an integrator that is unknown or not installed.
     """
     asked = os.environ.get("CONTVINES_PAGES", "")
     if asked and asked not in MODULES:

@@ -1,4 +1,4 @@
-"""What can be done with symbols before any integrator sees them: variables, derivatives, numbers in their place, and code that works them out."""
+"""Operations on symbolic formulas before integration: variables, derivatives, substitution, and generation of Python code."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 NUMPY_NAMES = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
-SLOPES: dict[str, Callable[[Symbol, Symbol], Any]] = {  # of f(x), by x and f
+SLOPES: dict[str, Callable[[Symbol, Symbol], Any]] = {  # derivative of f(x), from x and f
     "cos": lambda x, f: -sin(x),
     "sin": lambda x, f: cos(x),
     "tan": lambda x, f: 1.0 + f * f,
@@ -32,17 +32,17 @@ SLOPES: dict[str, Callable[[Symbol, Symbol], Any]] = {  # of f(x), by x and f
 
 
 def variable(name: str) -> Symbol:
-    """A symbol with a name."""
+    """Return a symbol with a name."""
     return Symbol("variable", name)
 
 
 def constant(value: float) -> Symbol:
-    """A number as a symbol."""
+    """Return a number as a symbol."""
     return Symbol("number", float(value))
 
 
 def in_order(values: Sequence[Symbol]) -> list[Symbol]:
-    """Every expression that these are made of, each once and after its operands."""
+    """Return every expression contained in `values` once, after its operands."""
     done: dict[int, Symbol] = {}
     waiting = list(reversed(values))
     while waiting:
@@ -60,12 +60,12 @@ def in_order(values: Sequence[Symbol]) -> list[Symbol]:
 
 
 def variables_of(value: Symbol) -> set[str]:
-    """Names of the variables that an expression contains."""
+    """Return the names of the variables in an expression."""
     return {node.operands[0] for node in in_order([value]) if node.operation == "variable"}
 
 
 def derivatives(values: Sequence[Symbol], by: Sequence[Symbol]) -> list[list[Symbol]]:
-    """Partial derivatives, ``[i][j]`` of value i by variable j."""
+    """Return partial derivatives, ``[i][j]`` of value i by variable j."""
     order = in_order(values)
     columns = [_slopes(order, one) for one in by]
     return [[column[id(value)] for column in columns] for value in values]
@@ -87,7 +87,7 @@ def _slopes(order: Sequence[Symbol], by: Symbol) -> dict[int, Symbol]:
 
 
 def _rule(node: Symbol, d: Sequence[Symbol]) -> Symbol | float:
-    """The derivative of an expression, from those of its operands."""
+    """Return the derivative of an expression from those of its operands."""
     operation, operands = node.operation, node.operands
     if operation in SLOPES:
         return SLOPES[operation](operands[0], node) * d[0]
@@ -105,7 +105,7 @@ def _rule(node: Symbol, d: Sequence[Symbol]) -> Symbol | float:
 
 
 def replaced(value: Symbol, by: Mapping[str, float | Symbol]) -> Symbol:
-    """The expression with numbers or other symbols in place of some variables."""
+    """Return the expression with numbers or other symbols in place of some variables."""
     places: dict[int, Symbol] = {}
     for node in in_order([value]):
         new = node
@@ -128,7 +128,7 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def rebuilt(node: Symbol, operands: Sequence[Any]) -> Symbol:
-    """The same expression of other symbols."""
+    """Return the same expression with other operands."""
     if node.operation in OPERATORS:
         return OPERATORS[node.operation](*operands)
     return Symbol(node.operation, *operands)
@@ -136,7 +136,7 @@ def rebuilt(node: Symbol, operands: Sequence[Any]) -> Symbol:
 
 @dataclass(frozen=True)
 class Layout:
-    """Which variables are states, which is the independent one, and which are numbers handed in at run time.
+    """Roles of the variables: states, independent variable, and numbers given at run time.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class Layout:
     clock : str
         The independent variable: the forcing phase, or time.
     numbers : tuple of str
-        In the order of the vectors handed in: parameters, then signs.
+        In the order of the vectors of numbers: parameters, then signs.
     """
 
     states: tuple[str, ...]
@@ -153,9 +153,9 @@ class Layout:
 
 
 def written(layout: Layout, values: Sequence[Symbol], tools: ModuleType) -> Callable:
-    """``f(x, clock, numbers)`` -> list of the values, as Python code on what `tools` (math or numpy) works on.
+    """Return a function ``f(x, clock, numbers)`` -> list of the values, as generated Python code.
 
-    Every expression is one line of the code, whatever contains it.
+    `tools` is the module with elementary functions, math or numpy. Every expression is one line of the code, so each is evaluated once.
     """
     names = {name: f"x[{i}]" for i, name in enumerate(layout.states)}
     names |= {layout.clock: "clock"} | {name: f"p[{i}]" for i, name in enumerate(layout.numbers)}
@@ -193,7 +193,7 @@ class Values:
         self._many: Callable | None = None
 
     def __call__(self, states: np.ndarray, clock: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
+        """Return values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
         if self._many is None:
             self._many = written(self.layout, self.values, np)
         out = np.empty((self.count, len(states)))
@@ -203,7 +203,7 @@ class Values:
         return out.T
 
     def one(self, state: np.ndarray, clock: float, numbers: np.ndarray) -> np.ndarray:
-        """Values, shape (count,), at one point."""
+        """Return values, shape (count,), at one point."""
         if self._one is None:
             self._one = written(self.layout, self.values, math)
         try:
@@ -212,5 +212,5 @@ class Values:
             ArithmeticError,
             ValueError,
             TypeError,
-        ):  # a root of less than zero: no number, here as everywhere
+        ):  # for example the root of a negative number: return NaN, as for many points
             return Values.__call__(self, state[None], np.array([clock]), numbers[None])[0]

@@ -1,8 +1,8 @@
-"""Pages flown by heyoka: compiled Taylor integrators. The only file that imports it.
+"""Integration of declared machines by heyoka's compiled Taylor integrators; the only file that imports heyoka.
 
-heyoka finds all roots inside a step from the Taylor polynomials of the functions (Biscani, Izzo, MNRAS 504 (2021) 2614), so that a double
-crossing is not missed. Between two events a page takes one to three steps: its batch integrators gain nothing there, and are used for flights
-with sensitivities only.
+heyoka finds all roots inside a step from the Taylor polynomials of the functions (Biscani, Izzo, MNRAS 504 (2021) 2614), so that no
+double crossing is missed. A flight takes one to three steps: batch integrators save no time there, and are used only for flights with
+derivatives.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from orbits.symbols import Symbol
 if TYPE_CHECKING:
     from types import ModuleType
 
-LANES = 4  # flights that are integrated side by side
-FEW = 2  # points up to which plain Python works formulas out faster than a call of compiled code
+LANES = 4  # flights that are integrated together
+FEW = 2  # largest number of points for which plain Python is faster than a call of compiled code
 
 
 @cache
 def _heyoka() -> ModuleType:
     heyoka = import_module("heyoka")
-    heyoka.set_logger_level_error()  # a flow that runs away is reported by what it returns
+    heyoka.set_logger_level_error()  # a divergent flow is reported by the return value
     return heyoka
 
 
 def lowered(layout: Layout, values: Sequence[Symbol]) -> list[Any]:
-    """heyoka's expressions, with time and runtime parameters in place of the clock and the numbers."""
+    """Return heyoka's expressions, with its time and runtime parameters in place of the clock and the numbers."""
     heyoka = _heyoka()
     names = {name: heyoka.par[i] for i, name in enumerate(layout.numbers)} | {layout.clock: heyoka.time}
     made: dict[int, Any] = {}
@@ -65,7 +65,7 @@ class Values(expressions.Values):
         return _heyoka().cfunc(lowered(self.layout, self.values), vars=_variables(self.layout))
 
     def __call__(self, states: np.ndarray, clock: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
+        """Return values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
         if len(states) <= FEW:
             return np.array([self.one(*row) for row in zip(states, clock, numbers)])
         out = np.empty((self.count, len(states)))
@@ -105,7 +105,7 @@ class _Variations(ABC):
 
 
 class Flight(_Variations):
-    """One flight at a time."""
+    """A flow with its derivatives, one flight at a time."""
 
     def _made(self, system: Any, how: dict[str, bool]) -> Any:
         return _heyoka().taylor_adaptive(system, [0.0] * self.n, **how)
@@ -113,7 +113,7 @@ class Flight(_Variations):
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, out: np.ndarray
     ) -> bool:
-        """Write the final state and its derivatives, (n + n (n + active),), row by row; False if the flow blows up."""
+        """Write the final state and its derivatives, (n + n (n + active),), row by row; return False if the flow diverges."""
         ta = self._integrator
         ta.time = begin
         ta.state[:] = self._begin
@@ -125,7 +125,7 @@ class Flight(_Variations):
 
 
 class Flights(_Variations):
-    """The same for several flights at once, `LANES` of them side by side in the processor's vectors; each takes its own steps."""
+    """A flow with its derivatives, `LANES` flights at a time in the processor's vectors; each flight has its own steps."""
 
     def _made(self, system: Any, how: dict[str, bool]) -> Any:
         return _heyoka().taylor_adaptive_batch(system.sys, np.tile(self._begin[:, None], LANES), **how)
@@ -133,12 +133,12 @@ class Flights(_Variations):
     def __call__(
         self, states: np.ndarray, begin: np.ndarray, end: np.ndarray, numbers: np.ndarray, out: np.ndarray
     ) -> bool:
-        """Write a row per flight, as `Flight` does: states (m, n), begin and end (m,), numbers (m, P); False if one blows up."""
+        """Write a row per flight, as `Flight` does: states (m, n), begin and end (m,), numbers (m, P); return False if one diverges."""
         ta, count = self._integrator, len(states)
         for first in range(0, count, LANES):
             lanes = np.minimum(
                 np.arange(first, first + LANES), count - 1
-            )  # the last one fills the lanes left over
+            )  # repeat the last flight in unused lanes
             ta.set_time(begin[lanes])
             ta.state[:] = self._begin[:, None]
             ta.state[: self.n] = states[lanes].T
@@ -153,10 +153,10 @@ class Flights(_Variations):
 class _Events(ABC):
     """A flow with functions whose zeros are events of heyoka's integrator.
 
-    The functions are moved by nothing: heyoka 7.13 loses the later roots in a step that begins exactly on one.
+    The functions are shifted by a tiny constant: heyoka 7.13 misses later roots in a step that begins exactly on a root.
     """
 
-    kind: str  # of events: `t_events` end a flight, `nt_events` do not
+    kind: str  # `t_events` end a flight, `nt_events` do not
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
         heyoka = _heyoka()
@@ -167,7 +167,10 @@ class _Events(ABC):
         self._integrator = heyoka.taylor_adaptive(
             system, [0.0] * len(system), compact_mode=len(system) >= LARGE, **{self.kind: events}
         )
-        self._state, self._pars = self._integrator.state, self._integrator.pars  # views of what it works on
+        self._state, self._pars = (
+            self._integrator.state,
+            self._integrator.pars,
+        )  # views of the integrator's arrays
         self._numbers = len(self._pars)
         self._done, self._stopped = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
 
@@ -175,7 +178,7 @@ class _Events(ABC):
     def _event(self, place: int, function: Any) -> Any: ...
 
     def _put(self, state: np.ndarray, clock: float, numbers: np.ndarray) -> Any:
-        """The integrator, at a state."""
+        """Return the integrator, set to a state."""
         ta = self._integrator
         ta.time = clock
         self._state[:] = state
@@ -184,7 +187,7 @@ class _Events(ABC):
 
 
 class Watch(_Events):
-    """A flow that reports every rise through zero of given functions on its way."""
+    """A flow that reports every rise of given functions through zero."""
 
     kind = "nt_events"
 
@@ -202,13 +205,13 @@ class Watch(_Events):
         return heyoka.nt_event(function, note, direction=heyoka.event_direction.positive)
 
     def __call__(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> list[Crossing]:
-        """(clock, which function, state) of every rise through zero between `begin` and `end`."""
+        """Return (clock, index of the function, state) of every rise through zero between `begin` and `end`."""
         self._found.clear()
         self._put(state, begin, numbers).propagate_until(end, max_steps=MOST_STEPS)
         return list(self._found)
 
     def move(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> None:
-        """Move `state` on, in place, whatever the functions do."""
+        """Move `state` on, in place, without regard to the functions."""
         self(state, begin, end, numbers)
         state[:] = self._state
 
@@ -218,7 +221,7 @@ class Watch(_Events):
         return np.array(self._state)
 
     def path(self, state: np.ndarray, clocks: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """States, shape (m, n), at the increasing `clocks` (equal ones allowed), the first of which is where `state` is."""
+        """Return states, shape (m, n), at the increasing `clocks` (equal ones allowed); `state` is that at the first clock."""
         ta = self._put(state, float(clocks[0]), numbers)
         grid, back = np.unique(np.maximum.accumulate(clocks), return_inverse=True)
         if len(grid) == 1:
@@ -238,7 +241,7 @@ class Watch(_Events):
 
 
 class Run(_Events):
-    """A flow that ends at the first fall through zero of one of its functions."""
+    """A flow that ends at the first fall of one of its functions through zero."""
 
     kind = "t_events"
 
@@ -249,9 +252,13 @@ class Run(_Events):
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray
     ) -> tuple[float, int | None]:
-        """Move `state` on, in place; returns the clock and which function ended the flight.
+        """Move `state` on, in place.
 
-        None: the end was reached; -1: the flow blew up.
+        Returns
+        -------
+        clock : float
+        place : int or None
+            Index of the function that ended the flight; None if the end was reached, -1 if the flow diverged.
         """
         ta = self._put(state, begin, numbers)
         if self._places:
@@ -270,9 +277,9 @@ class Run(_Events):
         return float(ta.time), -1
 
 
-MOST_STEPS = 100_000  # of one flight: a flow that needs more runs away,
+MOST_STEPS = 100_000  # largest number of steps of one flight; a flow that needs more diverges,
 RUNAWAY = (
-    1.0  # or, where it is followed to its next event, one that gets no further than so much clock in as many
+    1.0  # or, in a run to its next event, a flow that advances the clock by less than this in as many steps
 )
-LARGE = 12  # states from which compact code compiles much faster and runs nearly as fast,
-MANY = 40  # and equations of states with their variations: six states compile in 0.5 s in place of 3, and fly half as fast
+LARGE = 12  # number of states from which compact code compiles much faster and runs nearly as fast
+MANY = 40  # the same for equations of states with derivatives: six states compile in 0.5 s in place of 3 s, and run half as fast

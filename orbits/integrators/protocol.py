@@ -1,4 +1,4 @@
-"""What an integrator of declared machines answers, as `orbits.integrators` says in words; `heyoka` and `solve_ivp` do."""
+"""Protocols of the integrators of declared machines (see `orbits.integrators`); `heyoka` and `solve_ivp` implement them."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Protocol
 import numpy as np
 
 Crossing = tuple[float, int, np.ndarray]
-"""Clock, which function, state."""
+"""Clock, index of the function, state."""
 
 
 class Flight(Protocol):
-    """A flow with its sensitivities, one flight at a time."""
+    """A flow with its derivatives, one flight at a time."""
 
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, out: np.ndarray
@@ -20,7 +20,7 @@ class Flight(Protocol):
 
 
 class Flights(Protocol):
-    """The same, several flights at once."""
+    """A flow with its derivatives, several flights at once."""
 
     def __call__(
         self, states: np.ndarray, begin: np.ndarray, end: np.ndarray, numbers: np.ndarray, out: np.ndarray
@@ -40,7 +40,7 @@ class Watch(Protocol):
 
 
 class Run(Protocol):
-    """A flow that ends at the first fall of given functions."""
+    """A flow that ends at the first fall of one of its functions through zero."""
 
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray

@@ -1,6 +1,6 @@
-"""Pages flown by `scipy.integrate.solve_ivp`'s method DOP853: an oracle for tests, and what pages work with where heyoka is missing; slower by far.
+"""Integration of declared machines by DOP853 of `scipy.integrate.solve_ivp`: a reference for tests, and a slow replacement for heyoka.
 
-Crossings inside a step are looked for on its dense output, at points in it; where the samples come near to zero and turn back, more closely.
+Crossings inside a step are searched on samples of its dense output, and more closely if samples come near to zero and turn back.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from orbits.integrators.protocol import Crossing
 from orbits.settings import INTEGRATING
 from orbits.symbols import Symbol
 
-BETWEEN = np.linspace(0.0, 1.0, 13)[1:]  # parts of a step at which functions are sampled
+BETWEEN = np.linspace(0.0, 1.0, 13)[1:]  # fractions of a step at which functions are sampled
 MOST_STEPS = 100_000
 LANES = 1  # flights are integrated one by one
 
@@ -33,7 +33,7 @@ class _Path:
         self.final = self.nowhere = np.full(len(rates), np.nan)
 
     def steps(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> Iterator[DOP853]:
-        """The solver after each of its steps; it ends short of `end` where the flow blows up."""
+        """Yield the solver after each of its steps; stop short of `end` if the flow diverges."""
         p, nowhere = numbers.tolist(), self.nowhere
 
         def rates(clock: float, x: np.ndarray) -> list[float] | np.ndarray:
@@ -61,7 +61,7 @@ class _Path:
     def crossings(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, rising: bool
     ) -> Iterator[Crossing]:
-        """(clock, which function, state) of every rise (or fall) through zero, step by step."""
+        """Yield (clock, index of the function, state) of every rise (or fall) through zero, step by step."""
         sign = 1.0 if rising else -1.0
 
         def at(clock: float | np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -84,11 +84,14 @@ class _Path:
 
 
 def _rises(value: Callable[[float], float], clocks: np.ndarray, row: np.ndarray) -> list[float]:
-    """Where a function that was sampled at some clocks rises through zero; a rise that no sample shows lies before a highest one below zero."""
+    """Return the clocks at which a sampled function rises through zero.
+
+    A rise between two negative samples is possible only near a local maximum of the samples; there the function is maximised.
+    """
     marks, heights, last = [*clocks], [*row], len(row) - 1
     for k in range(last, -1, -1):
         low, high = max(k - 1, 0), min(k + 1, last)
-        drop = max(row[k] - row[low], row[k] - row[high])  # between samples it is higher by less
+        drop = max(row[k] - row[low], row[k] - row[high])  # largest possible rise above the sample
         if min(row[k] - row[low], row[k] - row[high]) >= 0.0 > row[k] > -drop:
             top: Any = minimize_scalar(
                 lambda c: -value(c), bounds=(clocks[low], clocks[high]), method="bounded"
@@ -121,7 +124,7 @@ class Flight:
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, out: np.ndarray
     ) -> bool:
-        """Write the final state and its derivatives, row by row; False if the flow blows up."""
+        """Write the final state and its derivatives, row by row; return False if the flow diverges."""
         for _ in self._path.steps(np.concatenate([state, self._begin]), begin, end, numbers):
             pass
         out[:] = self._path.final
@@ -129,20 +132,20 @@ class Flight:
 
 
 class Watch(_Path):
-    """A flow that reports every rise through zero of given functions on its way."""
+    """A flow that reports every rise of given functions through zero."""
 
     def __call__(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> list[Crossing]:
-        """(clock, which function, state) of every rise through zero between `begin` and `end`."""
+        """Return (clock, index of the function, state) of every rise through zero between `begin` and `end`."""
         return list(self.crossings(state, begin, end, numbers, rising=True))
 
     def move(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> None:
-        """Move `state` on, in place, whatever the functions do."""
+        """Move `state` on, in place, without regard to the functions."""
         for _ in self.steps(state, begin, end, numbers):
             pass
         state[:] = self.final
 
     def path(self, state: np.ndarray, clocks: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """States, shape (m, n), at the increasing `clocks` (equal ones allowed), the first of which is where `state` is."""
+        """Return states, shape (m, n), at the increasing `clocks` (equal ones allowed); `state` is that at the first clock."""
         rows = np.tile(self.nowhere, (len(clocks), 1))
         rows[np.asarray(clocks) <= clocks[0]] = state
         for solver in self.steps(state, float(clocks[0]), float(np.max(clocks)), numbers):
@@ -153,12 +156,12 @@ class Watch(_Path):
 
 
 class Run(_Path):
-    """A flow that ends at the first fall through zero of one of its functions."""
+    """A flow that ends at the first fall of one of its functions through zero."""
 
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray
     ) -> tuple[float, int | None]:
-        """Move `state` on, in place; returns the clock and which function ended the flight (None: `end` was reached; -1: the flow blew up)."""
+        """Move `state` on, in place; return the clock and the index of the function that ended the flight (None: end reached; -1: divergence)."""
         for clock, place, there in self.crossings(state, begin, end, numbers, rising=False):
             state[:] = there
             return clock, place
