@@ -91,7 +91,7 @@ class Detector(SegmentSearch):
             if split is None and apart[k]:
                 split = self.halved(segment, real, _neighbours(wide, lengths, k))
             if many and sharp[k]:
-                found = self._closely(segment, real)
+                found = self._by_eigenvalues(segment, real)
             elif split is not None:
                 found = [*self.both(segment, *split, real), Located(*split, role=Role.PLAIN)]
             elif differs[k]:
@@ -106,19 +106,19 @@ class Detector(SegmentSearch):
                 continue
             if sharp[k] and not (many or found) and kinked(segment):
                 return [*events, Located(float(i), segment.a, role=Role.LEAP)]
-            found, leaping = self._certain(segment, found)
+            found, leaping = self._without_spurious(segment, found)
             if leaping is not None and leaping.role is Role.LEAP:
                 return [*events, replace(leaping, position=float(i))]
             found = sorted([*found, leaping], key=POSITION) if leaping is not None else found
-            found = self._within(segment, found)
+            found = self._cut_at_bounds(segment, found)
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             # an interpolated point may lie just outside its segment
             found = [_placed(e, i + min(max(e.position, 0.0), 1.0 - EPSILON), bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
             if stop is not None:
                 # where a stick or flight vanishes p is stationary: a fold at the border is not a point of its own
-                found = [e for e in found if e is stop or self._apart(e, stop)]
-                events = [e for e in events if self._apart(e, stop)]
+                found = [e for e in found if e is stop or self._distinct_from_end(e, stop)]
+                events = [e for e in events if self._distinct_from_end(e, stop)]
             events += before_stop(found)
             if stop is not None:
                 return events
@@ -126,7 +126,9 @@ class Detector(SegmentSearch):
             return events
         return [*events, Located(float(landed), chunk.solved(landed), role=Role.LANDING)]
 
-    def _certain(self, segment: Segment, found: list[Located]) -> tuple[list[Located], Located | None]:
+    def _without_spurious(
+        self, segment: Segment, found: list[Located]
+    ) -> tuple[list[Located], Located | None]:
         """Return the special points in order, without spurious ones and those whose error exceeds the interval; and a mark if the ends show a leap."""
         found = sorted(found, key=POSITION)
         leaping, most = leap(segment, found), self.engine.upper - self.engine.lower
@@ -148,7 +150,7 @@ class Detector(SegmentSearch):
         start = first_start = whole.at(share)
         beyond = share
         while start is not None and share * whole.length > settings.resolution:
-            if not self._told(origin, start) or not self._hides(origin, start):
+            if not self._parameter_differs(origin, start) or not self._point_between(origin, start):
                 break
             closer = whole.at(SHRINKING * share)
             if closer is None:
@@ -161,25 +163,25 @@ class Detector(SegmentSearch):
         if share < beyond:
             split = (beyond - share) / (1.0 - share), first_start
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)
-        found, leaping = self._certain(segment, found)
+        found, leaping = self._without_spurious(segment, found)
         # at the branch point itself the parameter is stationary: on a flat branch rounding imitates folds and branch points next to it
         flat = settings.rounding * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
             _placed(e, share + (1.0 - share) * e.position, (origin.p, first.p))
             for e in found
             if e.kind not in ("fold", "branch-point")
-            or self._told(origin, e.point, max(flat, 10.0 * e.error))
+            or self._parameter_differs(origin, e.point, max(flat, 10.0 * e.error))
         ]
         leaps = leaping is not None and leaping.role is Role.LEAP
         return before_stop(found) + ([leaping] if leaping is not None and leaps else [])
 
-    def _told(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
+    def _parameter_differs(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
         """Whether the parameter of a point differs from that of a branch point by at least its error and rounding."""
         if self.engine.adaptive:  # on another mesh the origin itself is shifted, within its error
             error = max(error, rounding_of_parameter(self.engine, point), origin.correction)
         return abs(point.p - origin.p) >= error
 
-    def _hides(self, origin: Solved, start: Solved) -> bool:
+    def _point_between(self, origin: Solved, start: Solved) -> bool:
         """Whether multipliers have crossed the circle, or the parameter has turned, between a branch point and a point beside it.
 
         Borders need no test: first points are so near that their margins have the signs of the branch point's margins.
@@ -193,9 +195,11 @@ class Detector(SegmentSearch):
             (start.p - origin.p, settings.rounding * max(unit, abs(origin.p))),
             (float(start.tangent[-1]), engine.upright(origin.p)),
         )
-        return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._passed(origin, start)
+        return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._multipliers_crossed(
+            origin, start
+        )
 
-    def _passed(self, origin: Solved, start: Solved) -> bool:
+    def _multipliers_crossed(self, origin: Solved, start: Solved) -> bool:
         """Whether multipliers (eigenvalues) have crossed the circle (the axis) since a branch point, apart from those that are critical there.
 
         None has crossed if the numbers past -1 and of pairs are unchanged, and the total is that of the branch point's other multipliers plus at most
@@ -230,9 +234,9 @@ class Detector(SegmentSearch):
             lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < LANDS * size[:-1])
         return meets, lands
 
-    def _closely(self, segment: Segment, real: bool) -> list[Located]:
+    def _by_eigenvalues(self, segment: Segment, real: bool) -> list[Located]:
         """Return the special points of a segment of a problem with many unknowns, found from its eigenvalues."""
-        search = self._closer
+        search = self._eigenvalue_search
         whole = Segment(search.engine, segment.a, segment.b)
         a, b = whole.at(0.0), whole.at(1.0)
         if a is None or b is None:
@@ -242,7 +246,7 @@ class Detector(SegmentSearch):
         return search.search(Segment(search.engine, a, b), real)
 
     @cached_property
-    def _closer(self) -> SegmentSearch:
+    def _eigenvalue_search(self) -> SegmentSearch:
         """Search in the same problem, with eigenvalues computed at each point."""
         problem = self.engine.problem
         assert isinstance(problem, Nearing)
@@ -251,7 +255,7 @@ class Detector(SegmentSearch):
         search.own = self.own
         return search
 
-    def _within(self, segment: Segment, events: list[Located]) -> list[Located]:
+    def _cut_at_bounds(self, segment: Segment, events: list[Located]) -> list[Located]:
         """Cut the events at the parameter bound if the branch leaves the interval within the segment, turns back outside and re-enters."""
         engine = self.engine
         for k, event in enumerate(events):
@@ -266,7 +270,7 @@ class Detector(SegmentSearch):
                 return [*(e for e in events[:k] if e.position < place), Located(place, found, role=Role.LEFT)]
         return events
 
-    def _apart(self, event: Located, stop: Located) -> bool:
+    def _distinct_from_end(self, event: Located, stop: Located) -> bool:
         """Whether an event is distinct from the end of the branch nearby.
 
         Bifurcations, and folds with a multiplier +1, may be nearer to the end than other events.

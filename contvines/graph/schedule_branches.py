@@ -266,14 +266,14 @@ class _Leaving:
         others = int((np.abs(np.delete(real, np.abs(real + 1.0).argmin())) > 1.0).sum()) if len(real) else 0
 
         def exchanged(point: Solved) -> bool:
-            if not self._apart(target, point):
+            if not self._beyond_errors(target, point):
                 return True
             past = int(counts(target, point.row)[0])
             return (past - others - int(speed * (point.p - self.point.value) < 0.0)) % 2 == 0
 
         return exchanged
 
-    def _apart(self, target: Engine, solved: Solved) -> bool:
+    def _beyond_errors(self, target: Engine, solved: Solved) -> bool:
         """Whether the parameter of a solution beside the special point differs from that of the point by more than the errors of both."""
         known = self.point.location_error + rounding_of_parameter(target, solved)
         return abs(solved.p - self.point.value) > known
@@ -287,7 +287,7 @@ class _Leaving:
         way = self.run.settings.amplitude
         found = further = search(way)
         while further and way < most:
-            if all(self._apart(target, departure.ahead) for departure in further):
+            if all(self._beyond_errors(target, departure.ahead) for departure in further):
                 return further
             way *= 2.0
             further = search(way)
