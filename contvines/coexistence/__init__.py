@@ -1,1 +1,1 @@
-"""Everything that coexists: what many simulated starts reach, joined with what continuation follows."""
+"""Coexisting motions: attractors that many simulated starts reach, joined with branches from continuation; basins and robustness."""

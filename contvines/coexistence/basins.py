@@ -1,4 +1,4 @@
-"""Basins: which attractor each start of a plane reaches, how large their shares are, how ragged their boundary."""
+"""Basins of attraction on a plane of starts: the attractor of each start, the attractors' shares, the roughness of the boundary."""
 
 from __future__ import annotations
 
@@ -23,11 +23,10 @@ from .manifolds import Manifold, check_plane, stable_manifolds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    # import of own names
 
 
-MOST = 4_000_000  # points of a picture
-# periods simulated for manifolds, for each start of the usual picture: they take no longer than it
+MOST = 4_000_000  # largest number of starts
+# periods that may be simulated for manifolds, per start of a plane of the default size: about the work of the plane itself
 PER_START = 30
 Numbers = TypeVar("Numbers", float, np.ndarray)
 
@@ -36,7 +35,7 @@ CONFIDENCE = 1.96  # standard errors of a 95 % interval
 
 @runtime_checkable
 class OnCurve(Protocol):
-    """A motion of which states are known, shape (n, d); None where it does not recur."""
+    """A motion with a property ``curve``: states on it, shape (n, d), or None if it does not recur."""
 
     @property
     def curve(self) -> np.ndarray | None: ...
@@ -45,36 +44,37 @@ class OnCurve(Protocol):
 @hinted
 @dataclass(repr=False)
 class Basins:
-    """A plane of starts coloured by what they reach.
+    """A plane of starts and the attractor that each start reaches.
 
     Attributes
     ----------
     parameter : str
     value : float
+        Of the parameter.
     axes : (str, str)
-        Names of the coordinates that vary.
+        Names of the two coordinates that vary.
     x, y : float array (n,), (m,)
         Their values.
     fixed : dict
-        The other coordinates.
+        Values of the other coordinates by name.
     index : int array (m, n)
-        Which attractor the start at (x[j], y[i]) reaches.
+        Index in `attractors` of the attractor that the start at (x[j], y[i]) reaches.
     mirrored : bool array (m, n)
-        Whether it reaches the mirror image.
+        Whether the start reaches the attractor's mirror image.
     attractors : list of Attractor
         With their shares of the plane.
     manifolds : list of Manifold
         Stable manifolds of saddles, which separate the basins.
     notation : dict
-        Labels of axes by name of coordinate.
+        Axis labels by name of coordinate.
     leftward : str
-        The coordinate that grows from right to left in a picture.
+        The coordinate whose axis is drawn from right to left.
     unit : str
-        Of the parameter's value; empty for a plain number.
+        Unit of the parameter; empty for a plain number.
     gauges : dict
-        What one of a coordinate is in the unit in which it is shown, and that unit; none for plain numbers.
+        For each coordinate with a unit: the factor from computed to displayed numbers, and the unit's name.
     states : list of ndarray
-        Of each attractor a state on it, as the plane has it, or None.
+        For each attractor a point of it in the plane, shape (2,), or None.
     """
 
     parameter: str
@@ -94,7 +94,14 @@ class Basins:
     states: list[np.ndarray | None] = field(default_factory=list)
 
     def told(self, k: int, most: int | None = None) -> str:
-        """What attractor `k` is called, its name in at most so many letters; where another one has its name, with a state on it."""
+        """Return a name of attractor `k`; if another attractor has the same name, a state on this one is added.
+
+        Parameters
+        ----------
+        k : int
+        most : int, optional
+            Largest number of letters of the name.
+        """
         about, state = self.attractors[k], self.states[k] if self.states else None
         name = short_word(about.name) if most is None else short_word(about.name, most)
         alike = [a for a in self.attractors if (a.name, a.periods) == (about.name, about.periods)]
@@ -107,17 +114,13 @@ class Basins:
         return f"{name} through {', '.join(places)}"
 
     def shown(self, name: str, values: Numbers) -> Numbers:
-        """Values of a coordinate in the unit in which it is shown."""
+        """Convert values of a coordinate to its displayed unit."""
         return values * self.gauges.get(name, (1.0, ""))[0]
 
     def __str__(self) -> str:
-        # import of own names
-
         return table(self)
 
     def _repr_html_(self) -> str:
-        # import of own names
-
         return page(self)
 
     def __repr__(self) -> str:
@@ -126,19 +129,20 @@ class Basins:
         return f"Basins({self.axes[0]} x {self.axes[1]}, {columns} x {rows} starts at {self.parameter} = {self.value:.10g}: {found})"
 
     def interval(self, k: int) -> tuple[float, float]:
-        """A 95 % interval (Wilson's) of the share of attractor `k` in the plane, its points taken as draws from it."""
+        """Return Wilson's 95 % confidence interval of the share of attractor `k`, with the starts taken as random draws from the plane."""
         return wilson(self.attractors[k].share, self.index.size)
 
     def uncertainty_exponent(self) -> tuple[float, float]:
-        """Uncertainty exponent of the boundary and its standard error; 1: a smooth curve, near 0: riddled.
+        """Return the uncertainty exponent of the basin boundary and its standard error; 1 for a smooth curve, near 0 for a riddled basin.
 
         The share f(d) of points whose neighbour at distance d reaches another motion grows like d^alpha (Grebogi, McDonald,
-        Ott and Yorke, Phys. Lett. A 99 (1983) 415): a straight line through log f against log d, d = 1, 2, 4, ... points.
+        Ott and Yorke, Phys. Lett. A 99 (1983) 415). alpha is the slope of a straight line fitted to log f against log d,
+        d = 1, 2, 4, ... points.
 
         Raises
         ------
         ValueError
-            If all points reach one motion, or there are too few of them.
+            If all points reach one motion, or the plane has too few points.
         """
         inside = [k for k, about in enumerate(self.attractors) if about.kind == "impossible"]
         kinds = np.where(np.isin(self.index, inside), -1, 2 * self.index + self.mirrored)
@@ -162,7 +166,7 @@ class Basins:
         return float(fit[0]), float(np.sqrt(covariance[0, 0]))
 
     def to_dict(self) -> dict[str, Any]:
-        """Attractors, shares with their intervals, and the uncertainty exponent, ready for JSON, in the units that stand beside the numbers."""
+        """Return attractors, shares with their intervals, and the uncertainty exponent, ready for JSON and in the units given under ``units``."""
         try:
             exponent = list(self.uncertainty_exponent())
         except ValueError:
@@ -185,14 +189,14 @@ class Basins:
         }
 
     def plot(self, **options: Unpack[PlotOptions]) -> Figure:
-        """The plane in colours; see :func:`contvines.plots.basins.plot_basins`."""
+        """Plot the basins in colours; see :func:`contvines.plots.basins.plot_basins`."""
         from ..plots.basins import plot_basins
 
         return plot_basins(self, **options)
 
 
 def wilson(share: float, n: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a share that was counted among n draws."""
+    """Return Wilson's 95 % confidence interval of a share counted among n draws."""
     z2 = CONFIDENCE**2
     centre = (share + z2 / (2 * n)) / (1 + z2 / n)
     half = CONFIDENCE / (1 + z2 / n) * np.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
@@ -215,20 +219,21 @@ def basins(
     Parameters
     ----------
     machine : machine, orbit or problem
-        With a ``population``.
+        It must have a ``population``.
     over : str, optional
-        Name of the parameter whose value `at` is.
+        Name of the parameter.
     at : float
+        Value of the parameter.
     plane : two names, optional
         Coordinates of the plane; by default the last two of ``population.names`` among position and velocity.
     points : int or (int, int), optional
-        Across and up; by default ``population.across``: 200, of declared machines 60.
+        Number of starts across and up; by default ``population.across``: 200, for declared machines 60.
     within : mapping, optional
-        Ranges of the coordinates; by default the machine's box.
+        Ranges of the two coordinates by name; by default those of the machine's box.
     fixed : mapping, optional
-        The other coordinates; 0 by default.
+        Values of the other coordinates by name; 0 by default.
     saddles : Graph, optional
-        With the unstable motions whose stable manifolds are grown over the plane, which must be the section of motions with two
+        Its unstable motions' stable manifolds are computed on the plane. The plane must then be the section of motions with two
         states: position and velocity at phase zero, or the two states of a map.
 
     Returns
@@ -238,7 +243,7 @@ def basins(
     Raises
     ------
     ValueError
-        If a coordinate is unknown, or the numbers of points will not do.
+        If an argument is missing or invalid: the message names it.
     """
     population = population_of(machine, over)
     if at is None:
@@ -312,7 +317,7 @@ def basins(
 
 
 def _on_plane(motion: object, names: Sequence[str], axes: tuple[str, str], p: float) -> np.ndarray | None:
-    """A state on a motion, as the plane has it; None of one that does not recur or does not meet the plane's section."""
+    """Return the two coordinates `axes` of a state on a motion; None if it does not recur, or its section lacks these coordinates."""
     if isinstance(motion, OnCurve):
         states = motion.curve
     else:
@@ -326,10 +331,11 @@ def _on_plane(motion: object, names: Sequence[str], axes: tuple[str, str], p: fl
 
 
 def _cells(low: float, high: float, count: int) -> np.ndarray:
-    """Centres of equal cells: no start on the very edge of the cavity."""
+    """Return the centres of equal cells of an interval; no start lies exactly on its ends, which may be walls."""
     return low + (high - low) * (np.arange(count) + 0.5) / count
 
 
+# text for each end of a manifold that the summary mentions
 ENDS = {
     "leaves": "leaves the plane",
     "long": "cut, though it goes on",
@@ -338,12 +344,12 @@ ENDS = {
 
 
 def table(basins: Basins) -> str:
-    """What the plane is, a line per attractor with its share and the interval of it, and how ragged the boundary is."""
+    """Return the summary as text: the plane, a line per attractor with its share and confidence interval, and the boundary's exponent."""
     return titled(_title(basins), _shares(basins), _boundary(basins))
 
 
 def page(basins: Basins) -> str:
-    """The same as HTML."""
+    """Return the summary of `table` as HTML."""
     shares = _shares(basins).html()
     return "".join(
         [f"<p>{html.escape(_title(basins))}</p>", shares, *(f"<p>{t}</p>" for t in _boundary(basins))]

@@ -1,4 +1,4 @@
-"""The atlas: simulated attractors joined to one graph, until nothing that simulation finds is missing on it."""
+"""The atlas: one graph of all attractors that simulation finds, each traced with the branches connected to it."""
 
 from __future__ import annotations
 
@@ -24,15 +24,16 @@ from .settings import ATLAS
 from .windows import CYCLES, Windows, run_apart
 
 T = TypeVar("T")
-STARTS = 256  # at each of the given values where no number is given, in closed form
-FEW = 16  # starts at each of the further values
-SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
+STARTS = 256  # default number of starts at each given value, for closed-form machines
+FEW = 16  # starts at each further value
+SOUGHT = 8  # starts at each given value for the search for cycles, stable or not, by Newton's method
+# names of the kinds of work, as the message about work left undone shows them
 TRACED = "values whose motions are not traced"
 GIVEN, BETWEEN, SCATTERED = "given values", "values between changes", "scattered values"
 ENDS = "ends of stable stretches"
 WAITING = "branches that leave others"
-FOLLOWED = 4  # starts that follow the motion past an end of stability
-LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
+FOLLOWED = 4  # starts that one end of a stable stretch costs, at which the lost motion is followed
+LONGEST_SCAN = 2  # largest number of scattered values, relative to `scan`
 
 
 @hinting
@@ -55,22 +56,25 @@ def atlas(
     kinds: Sequence[Kind] | None = None,
     interrupt: OnInterrupt = "raise",
 ) -> Graph:
-    """One graph with every attractor that many simulated starts find, and all that is connected to them.
+    """Compute one graph of all attractors that many simulated starts find, with the branches connected to them.
 
-    At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
-    exactly, or the root of a new one, which is traced with everything that leaves it. The search begins with the motions that most starts reach:
+    At each value of the parameter, starts are drawn and simulated, and the periodic motions on which they settle are solved exactly. Each of
+    these is a point of a known branch or the root of a new one, which is traced with all branches that leave it. The steps are:
 
-    1. `starts` starts at each of `values`, all of them before the first motion is traced;
-    2. fewer starts in every stretch between two changes of what is known to be stable, wide stretches first;
-    3. fewer starts at values scattered evenly over the interval, until `scan` values in a row have met nothing new;
-    4. past every end of a stable stretch the motion that is lost there is followed to what comes after it, wide stretches first;
-    5. narrow windows: unstable cycles, from chaos and from a few starts, are traced, and kept where they lead to a stable one;
-    6. steps 4 and 2 for what is new, and values where a kind of motion without a branch begins or ends.
+    1. `starts` starts at each of `values`; tracing begins after all these simulations;
+    2. fewer starts in each stretch between two changes of stability, wide stretches first;
+    3. fewer starts at values scattered evenly over the interval, until `scan` values in a row have added no branch;
+    4. at each end of a stable stretch, the motion is followed just beyond it by simulation, to the attractor that replaces it, wide stretches
+       first;
+    5. narrow windows: unstable cycles, found in chaos and by Newton's method from a few starts, are traced, and stable branches connected to
+       them are added;
+    6. steps 4 and 2 for the new branches, and values at which a kind of motion without a branch begins or ends.
 
-    So near to a homoclinic orbit that only narrow windows fit between, 1e-5 of the interval, what leaves a branch is not followed; special points say so.
+    Branches that begin very near to a homoclinic orbit are not followed if the windows there are narrower than 1e-5 of the interval; the
+    special points' notes say so.
 
-    When the budget is used up, the branch or the simulation at hand is finished, and the message of the graph says what is left out. A file keeps what was
-    computed: the same call with ``journal=contvines.resume("FILE.vines")`` and a larger budget goes on from there.
+    When the budget is used up, the current branch or simulation is finished, and the graph's message lists the work left out. With a file as
+    journal, the same call with ``journal=contvines.resume("FILE.vines")`` and a larger budget continues.
 
     Parameters
     ----------
@@ -81,19 +85,19 @@ def atlas(
     within : (float, float)
         Its interval.
     values : int or sequence of float
-        Where starts are simulated: so many evenly spread values, or these.
+        Parameter values at which starts are simulated: a number of evenly spread values, or a list.
     starts : int, optional
-        How many at each value; by default 256, of a machine whose flow is integrated 32.
+        Number of starts at each value; by default 256, for a machine whose flow is integrated 32.
     seed : int
-        Of the starts and the further values; equal seeds give equal graphs.
+        Random seed of the starts and the scattered values; equal seeds give equal graphs.
     scan : int, optional
-        So many further values in a row must meet nothing new, with 16 starts each. By default they have as many starts as the given values
-        together. 0 leaves them out and all else that looks beyond the given values: unstable cycles, ends of stability that are followed to what
-        comes after them, stretches between two changes.
+        Step 3 ends after this number of values in a row without a new branch, with 16 starts each. By default these values have as
+        many starts as the given values together. 0 omits all steps but the first.
     budget : int, optional
-        Work that the atlas may take, by default 500000, which is some minutes: so many points of branches in closed form (one of many unknowns counts as
-        often as it has 64, a special point of cycles as forty points), or a hundred times as many simulated periods (steps of a map); those of a machine whose flow is integrated count twentyfold. It does not depend on the computer's speed or
-        load; ``settings["work"]`` of the graph says how much of it was used, and ``settings["left"]`` what it left out.
+        Largest amount of work, by default 500000 units, which take some minutes. One unit is a point of a branch in closed form (a point with
+        many unknowns counts once per 64 unknowns, a special point of cycles as forty points) or 100 simulated forcing periods (steps of a
+        map); units of a machine whose flow is integrated count twentyfold. The amount does not depend on the computer's speed or load.
+        ``settings["work"]`` of the graph is the work done, ``settings["left"]`` the work left out.
     depth, virtual, user_functions, journal, progress, settings, kinds, interrupt
         As for :func:`contvines.diagram`.
 
@@ -105,7 +109,7 @@ def atlas(
     Raises
     ------
     ValueError
-        If the interval, the values or the starts will not do; the sentence says why.
+        If the interval, the values or the starts are invalid.
     """
     population = population_of(machine, over)
     if within is None:
@@ -133,7 +137,7 @@ def atlas(
 
 
 def _work(looking: _Looking, where: list[float], starts: int, scan: int) -> None:
-    """The steps of an atlas, one after another."""
+    """Run the steps of an atlas one after another; `where` are the given values."""
     if scan:
         looking.effort.expect(SCATTERED, scan)
         looking.effort.expect(CYCLES, len(where))
@@ -158,7 +162,13 @@ def _check_whole(name: str, value: object, least: int) -> None:
 
 
 def check_values(values: int | Sequence[float], within: tuple[float, float]) -> list[float]:
-    """The values at which starts are simulated, in increasing order.
+    """Return the parameter values at which starts are simulated, in increasing order.
+
+    Parameters
+    ----------
+    values : int or sequence of float
+        Number of evenly spread values, or the values.
+    within : (float, float)
 
     Raises
     ------
@@ -183,7 +193,7 @@ def check_values(values: int | Sequence[float], within: tuple[float, float]) -> 
 
 
 class _Looking:
-    """What has been simulated so far, and where next."""
+    """State of the search of an atlas: the simulated values, the motions found, and the steps of the search as methods."""
 
     def __init__(self, run: Run, population: Population, seed: int, budget: int) -> None:
         self.run, self.population, self.seed = run, population, seed
@@ -193,12 +203,12 @@ class _Looking:
         apart = run_apart(run)
         self.effort = Effort(population, budget, lambda: run.cost + apart.cost)
         self.windows = Windows(run, population, apart, self.effort)
-        self.left: dict[str, int] = {}  # pieces of work that the budget did not allow
+        self.left: dict[str, int] = {}  # by kind of work, number of pieces that the budget did not allow
         run.over = lambda: self.effort.over
         run.left = lambda: Left(*self.effort.left())
 
     def pieces(self, what: str, things: Sequence[T], least: int = 0) -> Iterator[T]:
-        """The pieces of a search one by one while the budget lasts, at least so many; those that are left out are counted."""
+        """Yield the pieces of one kind of work while the budget lasts, at least the first `least`; count those left out."""
         self.effort.expect(what, len(things))
         for k, thing in enumerate(things):
             if k >= least and self._over(what, len(things) - k):
@@ -207,20 +217,20 @@ class _Looking:
                 yield thing
 
     def _over(self, what: str, left: int) -> bool:
-        """Whether the budget is used up; then so many pieces of work are left out."""
+        """Return whether the budget is used up; if so, record that `left` pieces of this kind of work are left out."""
         if self.effort.over:
             self.left[what] = left
         return self.effort.over
 
     def given(self, values: Sequence[float], starts: int) -> None:
-        """Simulate starts at the given values, then trace what they reach."""
+        """Simulate starts at the given values, then trace the motions that they reach."""
         self.effort.expect(TRACED, len(values))
         met = [self.simulated(p, starts, self.seed) for p in self.pieces(GIVEN, values, 1)]
         for counted in self.pieces(TRACED, met, 1):
             join(self.run, counted)
 
     def simulated(self, p: float, starts: int, seed: int) -> list[Counted]:
-        """Simulate starts at a value."""
+        """Simulate starts at a value and return the motions that they reach."""
         self.run.tell(f"{starts} starts at {self.population.parameter} = {p:.6g}", p)
         counted = census(self.population, p, starts, seed, self.run.journal)
         self.asked.append(p)
@@ -228,11 +238,11 @@ class _Looking:
         return counted
 
     def few(self, p: float) -> int:
-        """Simulate a few starts at a value, and trace what they reach; the number of branches that this has added."""
+        """Simulate a few starts at a value, trace the motions that they reach, and return the number of branches added."""
         return join(self.run, self.simulated(p, FEW, self.seed + len(self.asked)))
 
     def for_cycles(self, values: Sequence[float]) -> None:
-        """Follow unstable cycles, out of the chaos that has been met and from elsewhere, to where they are born with a stable one."""
+        """Find narrow windows: trace unstable cycles, from chaotic motions and from starts, back to the folds at which stable ones begin."""
         given = set(values)
         self.windows.beside([counted for counted in self.found if counted.attractor.value in given])
         self.windows.around(values, SOUGHT, self.seed)
@@ -240,11 +250,11 @@ class _Looking:
             self.left[CYCLES] = self.windows.left
 
     def between(self, most: int) -> None:
-        """One value at least in each stretch between two changes, new changes included, up to `most` values."""
+        """Simulate at one value at least in each stretch between two changes of stability, new changes included, at up to `most` values."""
         self._few(partial(unasked, self.run.graph), most)
 
     def unbranched(self, most: int) -> None:
-        """Values where a kind of motion without a branch begins or ends, up to `most`."""
+        """Simulate at up to `most` values near to which a kind of motion without a branch begins or ends."""
 
         def places(asked: Sequence[float], left: int) -> list[float]:
             met: dict[str, list[float]] = {}
@@ -261,19 +271,20 @@ class _Looking:
                 self.few(p)
 
     def past_ends(self, most: int) -> None:
-        """Follow what is lost at the ends of stable stretches, those of what it leads to included, until `most` starts have been in all."""
+        """Follow the motions beyond the ends of their stable stretches, those of new branches included, with at most `most` starts in all."""
         while ends := self.handover.left()[: max(most // FOLLOWED - len(self.handover.done), 0)]:
             for end in self.pieces(ENDS, ends):
                 found = self.handover.follow(end)
                 self.found += found
-                join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
+                # full depth: motions that leave the new branches are found at the ends of these
+                join(self.run, found, self.run.depth)
             if self.effort.over:
                 break
         left = len(self.handover.left())
         self.run.graph.settings |= {"followed": len(self.handover.done), "unfollowed": left}
 
     def everywhere(self, scan: int) -> None:
-        """Scattered values until `scan` of them in a row have added nothing."""
+        """Simulate at scattered values until `scan` values in a row have added no branch."""
         quiet = k = 0
         self.effort.expect(ENDS, len(self.handover.left()))
         while (left := min(scan - quiet, LONGEST_SCAN * scan - k)) > 0 and not self._over(SCATTERED, left):
@@ -286,9 +297,9 @@ class _Looking:
         self.run.graph.settings |= {"scanned": k, "quiet": quiet}
 
     def tell_left(self) -> None:
-        """Keep how much work was done, and say what the budget and the choice of values leave out."""
+        """Store the amount of work, the unknown stretches and the work left out in the graph's settings and message."""
         graph, effort = self.run.graph, self.effort
-        if self.run.queue and limit_reached(self.run):  # later roots have left more of them waiting
+        if self.run.queue and limit_reached(self.run):  # later roots have added waiting branches
             leave_waiting(self.run)
         elif self.run.queue:
             self.left[WAITING] = len(self.run.queue)

@@ -1,4 +1,4 @@
-"""A census: many starts at one value of the parameter, the motions that they reach, and how these are joined to a graph."""
+"""Censuses: many starts at one value of the parameter and the motions that they reach; joining these motions to a graph."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ Solution = tuple[Problem, np.ndarray]
 
 @runtime_checkable
 class _Orbit(Protocol):
-    """A solution that hands out its problem."""
+    """A solution with a method that returns its problem."""
 
     def problem(self, over: str | None) -> object: ...
 
 
 def population_of(thing: object, over: str | None = None, **parameters: float) -> Population:
-    """The population of a machine, an orbit or a problem; a population is returned as it is.
+    """Return the population of a machine, an orbit or a problem; a population is returned unchanged.
 
     Raises
     ------
     ValueError
-        If it has none, or no such parameter.
+        If it has no population, or the parameter is unknown.
     """
     if isinstance(thing, Population):
         return thing
@@ -53,7 +53,16 @@ def population_of(thing: object, over: str | None = None, **parameters: float) -
 # ------------------------------------------------------------------ what starts settle on
 @dataclass
 class Counted:
-    """A motion that a census has met, ready to be joined to a graph; `state` lies on it."""
+    """A motion found by simulation.
+
+    Attributes
+    ----------
+    attractor : Attractor
+    problem, u : Problem and float array, or None
+        A solution that can be continued; None if the motion lies on no branch.
+    state : float array, optional
+        A state on the motion.
+    """
 
     attractor: Attractor
     problem: Problem | None
@@ -62,13 +71,15 @@ class Counted:
 
 
 def census(population: Population, p: float, count: int, seed: int, journal: Journal) -> list[Counted]:
-    """Draw starts, let them settle, count; what the journal remembers is not simulated again.
+    """Draw starts, simulate them, and return the motions reached with their shares; a census in the journal is not simulated again.
 
     Parameters
     ----------
     population : Population
     p : float
+        Value of the parameter.
     count, seed : int
+        Number and random seed of the starts.
     journal : Journal
     """
     key = f"census/{p!r}/{count}/{seed}"
@@ -78,15 +89,16 @@ def census(population: Population, p: float, count: int, seed: int, journal: Jou
 def followed(
     population: Population, p: float, starts: np.ndarray, key: str, journal: Journal
 ) -> list[Counted]:
-    """Let starts settle that were not drawn: what they reach has no share.
+    """Simulate given starts and return the motions reached, with share 0: chosen starts say nothing about shares.
 
     Parameters
     ----------
     population : Population
     p : float
+        Value of the parameter.
     starts : float array (m, n)
     key : str
-        Under which the journal remembers it.
+        Key in the journal.
     journal : Journal
     """
     found = _settled(population, p, lambda: starts, key, journal)
@@ -98,7 +110,7 @@ def followed(
 def _settled(
     population: Population, p: float, starts_of: Callable[[], np.ndarray], key: str, journal: Journal
 ) -> list[Counted]:
-    """What starts settle on, with shares of them; the starts are made where the journal does not know."""
+    """Return the motions on which starts settle, with their shares, from the journal or by simulation of ``starts_of()``."""
 
     def simulated() -> list[Counted]:
         motions, index, mirrored = population.settle(starts_of(), p)
@@ -106,7 +118,7 @@ def _settled(
         return [Counted(a, m.problem, m.u, m.state) for a, m in zip(attractors, motions, strict=True)]
 
     def recalled(known: Mapping[str, Any]) -> list[Counted] | None:
-        """None where a problem takes functions of the user's that are not at hand."""
+        """Return the recorded motions; None if a problem needs user functions that are not available."""
         found = []
         for k, description in enumerate(known["problems"]):
             own = {name: known[name][k] for name in ("word", "periods", "kind", "starts")}
@@ -125,7 +137,7 @@ MEASURED = ("share", "mirror_share", "exponent", "error")
 
 
 def _record(found: Sequence[Counted]) -> dict[str, Any]:
-    """What a journal keeps of a census."""
+    """Return the journal's record of a census."""
     record: dict[str, Any] = {
         "problems": [None if c.problem is None else dict(c.problem.describe()) for c in found]
     }
@@ -147,19 +159,21 @@ def remembered(
     record: Callable[[Found], dict[str, Any]],
     recall: Callable[[Mapping[str, Any]], Found | None],
 ) -> Found:
-    """What a journal keeps under a key, with the work that it took; else it is made, and recorded.
+    """Return a result from the journal, or compute and record it; the work that it took is counted in both cases.
 
     Parameters
     ----------
     population : Population
-        Whose work is counted.
+        Its `work` is increased.
     key : str
+        Key in the journal.
     journal : Journal
     make : callable
+        Computes the result.
     record : callable
-        What is found -> what the journal keeps of it.
+        Returns the journal's record of a result.
     recall : callable
-        The reverse; None where it cannot be had.
+        Returns the result of a record; None if it cannot be rebuilt.
     """
     known = journal.recall(key)
     found = None if known is None else recall(known)
@@ -175,7 +189,7 @@ def remembered(
 def attractors_of(
     motions: Sequence[Motion[Problem]], index: np.ndarray, mirrored: np.ndarray, p: float
 ) -> list[Attractor]:
-    """What starts have settled on, with shares of them; see `contvines.problems.abilities.Population`."""
+    """Return the motions on which starts have settled as attractors with shares; arguments as ``Population.settle`` returns them."""
     return [
         Attractor(
             float(p), m.word, int(m.periods), m.kind, None, float((index == k).mean()),
@@ -187,7 +201,7 @@ def attractors_of(
 
 # ------------------------------------------------------------------ joined to a graph
 def locate(run: Run, counted: Counted) -> str | None:
-    """Label of the branch of the graph on which an attractor lies, exactly; None if it lies on none."""
+    """Return the label of the branch on which a motion lies (to solver accuracy); None if it lies on none."""
     if counted.problem is None:
         return None
     known = run.register.find(counted.problem, np.asarray(counted.u), counted.attractor.value)
@@ -195,14 +209,19 @@ def locate(run: Run, counted: Counted) -> str | None:
 
 
 def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
-    """Give each attractor the label of its branch; what lies on none is traced first, with all that leaves it.
+    """Set the branch label of each attractor; a motion that lies on no branch is first traced with the branches that leave it.
 
-    Its branch counts as one that `depth` others lie before.
+    Parameters
+    ----------
+    run : Run
+    found : sequence of Counted
+    depth : int
+        Depth that the new roots count as: number of switches from the first branch.
 
     Returns
     -------
     int
-        How many roots were added.
+        Number of branches added.
     """
     before = len(run.graph.branches)
     for counted in found:
@@ -218,20 +237,29 @@ def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
                 continue
             label = locate(run, counted)
         attractor.branch = label
-        if label is not None:  # one motion, one spelling of its word
+        if label is not None:  # the branch's spelling of the cyclic word
             attractor.word = str(run.graph.branches[label].description.get("word", attractor.word))
     return len(run.graph.branches) - before
 
 
 def add_root(run: Run, problem: Problem, u: np.ndarray, p: float, depth: int = 0) -> None:
-    """Trace a solution with all that leaves it; alone where `max_branches` or `max_unknowns`, which limit no roots, is reached.
+    """Trace the branch of a solution, and the branches that leave it.
 
-    Not at all where the budget of an atlas has left branches waiting: these come first when a larger one goes on. Its branch counts as one that `depth` others lie before.
+    Once `max_branches` or `max_unknowns` is reached, only the root's own branch is traced: these limits do not apply to roots. Nothing
+    is traced if the budget of an atlas has left branches waiting: these come first in a run with a larger budget.
+
+    Parameters
+    ----------
+    run : Run
+    problem, u, p
+        The solution.
+    depth : int
+        Depth that the root counts as: number of switches from the first branch.
 
     Raises
     ------
     ValueError
-        If it is no start; see :func:`contvines.graph.builder.begin`.
+        If continuation cannot start there; see :func:`contvines.graph.builder.begin`.
     """
     if run.queue and run.graph.complete:
         return
@@ -243,7 +271,7 @@ def add_root(run: Run, problem: Problem, u: np.ndarray, p: float, depth: int = 0
 
 
 def run_on(graph: Graph, depth: int = 0, virtual: bool = True, limits: Limits = NO_LIMITS) -> Run:
-    """A run that goes on with a graph, whose branches it knows, with the settings it was made with."""
+    """Return a run that extends a graph, with the graph's branches registered and the settings that made it."""
     run = Run(graph, Settings.kept(graph.settings), NullJournal(), depth, virtual, None, None, limits)
     adopt(run)
     return run
@@ -251,13 +279,14 @@ def run_on(graph: Graph, depth: int = 0, virtual: bool = True, limits: Limits = 
 
 # ------------------------------------------------------------------ after a diagram
 def look(graph: Graph, population: Population) -> list[Attractor]:
-    """Attractors that a few simulated starts reach and that lie on no branch of the graph; kept as ``graph.missing``.
+    """Search briefly for attractors that lie on no branch of a graph; they are returned and stored as ``graph.missing``.
 
     Parameters
     ----------
     graph : Graph
-        With its problems.
+        With its problems attached.
     population : Population
+        Its `brief` gives the numbers of values and starts.
     """
     run, (low, high) = run_on(graph), graph.within
     found: list[Attractor] = []
@@ -272,9 +301,13 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
 
 
 def missing_text(graph: Graph, study: str) -> str:
-    """What the look has found, in one line with the command that adds it; empty if nothing.
+    """Describe the attractors in ``graph.missing`` in one line, with the command that adds them; empty if there are none.
 
-    No branch holds motions that do not repeat.
+    Parameters
+    ----------
+    graph : Graph
+    study : str
+        Name of the study's file.
     """
     best: dict[tuple[str, int, str], Attractor] = {}
     for about in sorted(graph.missing, key=lambda about: -about.share):

@@ -1,4 +1,4 @@
-"""Work that has gone into an atlas, beside its budget, and what is left of it as far as that is known."""
+"""Work done by an atlas relative to its budget, and estimates of the work that is left."""
 
 from __future__ import annotations
 
@@ -10,32 +10,33 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ..problems.abilities import Population
 
-BUDGET = 500_000  # units of work that an atlas may take where no number is given: some minutes
-PERIODS = 100  # simulated forcing periods, or steps of a map, that take about as long as a point of a branch
+BUDGET = 500_000  # default budget of an atlas, in units of work; some minutes
+PERIODS = 100  # simulated forcing periods, or steps of a map, per unit: about the time of a point of a branch
 
 
 class Effort:
-    """Work so far, counted in points of branches in closed form; the same on every computer, however busy.
+    """Counter of work, in units of a point of a branch in closed form, so that it does not depend on the computer's speed.
 
     Parameters
     ----------
     population : Population
-        Whose ``work`` are the periods simulated so far, and ``price`` what a point or a period costs beside one in closed form.
+        Its ``work`` is the number of periods simulated so far, its ``price`` the cost of a point or period relative to a closed-form one.
     budget : int
+        Largest number of units.
     points : callable
-        Returns how many points of branches there are so far, those of many unknowns counted several times.
+        Returns the number of points of branches so far, points with many unknowns counted several times.
     """
 
     def __init__(self, population: Population, budget: int, points: Callable[[], int]) -> None:
         self.population, self.budget, self.points = population, budget, points
         self.begun, self.started = population.work, monotonic()
-        self.waiting: dict[str, int] = {}  # pieces of each search that are known so far
-        # pieces of each search that are done, and their seconds
+        self.waiting: dict[str, int] = {}  # number of known pieces left, by kind of work
+        # number of finished pieces and their seconds, by kind of work
         self._took: dict[str, tuple[int, float]] = {}
 
     @property
     def spent(self) -> int:
-        """Points of branches, and simulated periods in units of :data:`PERIODS`, at their price."""
+        """Units of work done so far, by points of branches and by simulation."""
         return int(self.population.price * (self.points() + (self.population.work - self.begun) / PERIODS))
 
     @property
@@ -44,12 +45,12 @@ class Effort:
         return self.spent >= self.budget
 
     def expect(self, search: str, pieces: int) -> None:
-        """So many pieces of a search are known to be left."""
+        """Set the number of pieces of a kind of work that are left, as far as known."""
         self.waiting[search] = pieces
 
     @contextmanager
     def piece(self, search: str) -> Iterator[None]:
-        """The time of one of them."""
+        """Measure the time of one piece of a kind of work, as a context manager."""
         begun = monotonic()
         yield
         count, seconds = self._took.get(search, (0, 0.0))
@@ -57,8 +58,17 @@ class Effort:
         self.waiting[search] = max(self.waiting.get(search, 0) - 1, 0)
 
     def left(self) -> tuple[float, int, int, float]:
-        """Share of the budget that is used; pieces of work that are done, and known so far; the time that the others, or the rest of the budget, will
-        take, as far as that is known: NaN before the first is done."""
+        """Return the progress of the atlas.
+
+        Returns
+        -------
+        share : float
+            Used share of the budget.
+        done, known : int
+            Numbers of finished pieces and of all known pieces.
+        seconds : float
+            Estimated time that the known pieces left, or the rest of the budget, will take; nan before the first piece is finished.
+        """
         done, known = sum(count for count, _ in self._took.values()), sum(self.waiting.values())
         share, seconds = min(self.spent / self.budget, 1.0), float("nan")
         if done:

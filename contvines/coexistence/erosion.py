@@ -1,4 +1,4 @@
-"""Erosion curves: what is left of an attractor's safety along its branch."""
+"""Erosion curves: smallest kick and share of starts of a branch's stable motions against the parameter."""
 
 from __future__ import annotations
 
@@ -29,10 +29,11 @@ class Erosion:
     Attributes
     ----------
     parameter, label, word : str
+        Name of the parameter; label and word of the branch.
     entries : list of Robustness
         In increasing order of the parameter.
     notation : dict
-        Labels of axes by name of parameter.
+        Axis labels by name of parameter.
     """
 
     parameter: str
@@ -48,7 +49,7 @@ class Erosion:
 
     @property
     def distances(self) -> np.ndarray:
-        """Lengths of the smallest kicks that lead elsewhere (local integrity), shape (n,)."""
+        """Lengths of the smallest kicks that lead to another attractor (local integrity), shape (n,)."""
         return np.array([one.distance for one in self.entries])
 
     @property
@@ -58,11 +59,11 @@ class Erosion:
 
     @property
     def unit(self) -> str:
-        """Of the parameter, empty where it is a plain number."""
+        """Unit of the parameter; empty for a plain number."""
         return next((one.units.get(one.parameter, "") for one in self.entries), "")
 
     def to_dict(self) -> dict[str, Any]:
-        """Ready for JSON."""
+        """Return the curve ready for JSON."""
         return {
             "parameter": self.parameter,
             "branch": self.label,
@@ -87,7 +88,7 @@ class Erosion:
         return titled(f"{self.label}  {short_word(self.word)}", table)
 
     def plot(self, **options: Unpack[PlotOptions]) -> Figure:
-        """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""
+        """Plot smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""
         from ..plots.erosion import plot_erosion
 
         return plot_erosion(self, **options)
@@ -103,13 +104,13 @@ def erosion(
     starts: int | None = 512,
     seed: int = 0,
 ) -> Erosion:
-    """The robustness of a branch's motions, value by value.
+    """Compute the robustness of a branch's stable motions at several values of the parameter.
 
     Parameters
     ----------
     branch : Branch
     values : int or sequence of float
-        So many, spread evenly over the branch's stable intervals, or these.
+        Number of values, spread evenly over the branch's stable intervals, or the values.
     units, directions, starts, seed
         As for :func:`contvines.robustness`.
 
@@ -121,7 +122,7 @@ def erosion(
     where = _spread(branch, values) if isinstance(values, int) else sorted(float(v) for v in values)
     if not where:
         raise ValueError(f"values = {values!r}: give how many, 1 or more, or a list of values")
-    for value in where:  # all are refused before any is simulated
+    for value in where:  # check all values before the first simulation
         stable_at(branch, value)
     word = str(branch.description.get("word", ""))
     found = Erosion(branch.parameter, branch.label, word, notation=notation_of(branch.problem))
@@ -133,7 +134,7 @@ def erosion(
 
 
 def _spread(branch: Branch, count: int) -> list[float]:
-    """Values inside the stable intervals, evenly over their union, none of them at an end."""
+    """Return values spread evenly over the union of the branch's stable intervals, none of them at an end."""
     intervals = sorted(branch.stable_intervals()) if branch.real else []
     merged: list[list[float]] = []
     for first, last in intervals:
