@@ -57,7 +57,7 @@ FACTORIES = {
     "orbits.declared.stored:rebuild": "orbits.problem:rebuild",
     "orbits.machines.declared.stored:rebuild": "orbits.problem:rebuild",
 }
-"""Functions that rebuild problems from their descriptions: name in a file -> where the function is; names of earlier versions stay, for their files."""
+"""Functions that rebuild problems from descriptions: name in a file -> the function's place; names of earlier versions are kept for their files."""
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
 __getattr__ = on_demand(
     __name__,

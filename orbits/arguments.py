@@ -1,6 +1,6 @@
-"""The data of a cycle's equations and the arrays to work in, as the kernels are handed them, each one struct of the native core; numbers of formulas.
+"""Data and workspaces of the kernels of cycles, each one struct of the native core, and constants of floating-point arithmetic.
 
-The native core (native/cycles.hpp) sees the same memory as the reference.
+The native core (native/cycles.hpp) and the reference use the same memory.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 Reals = float | np.ndarray
-"""A number, or an array of them: the shapes of what goes in decide."""
+"""A number, or an array of numbers, with the shape of the arguments."""
 ROUNDOFF = 2.3e-16
-"""Just above the distance of neighbouring floats, relative: what is smaller than this share of a number does not change it."""
+"""Slightly more than the relative distance of neighbouring floats: a smaller share of a number does not change it."""
 SMALLEST = 1e-300
-"""Divisors are at least this, so that no quotient of ordinary numbers is undefined; what is smaller is zero."""
+"""Smallest divisor, so that no quotient of ordinary numbers is undefined."""
 UNBOUNDED = 1e15
-"""Stands for a multiplier that grows without bound towards a border: larger than any that double precision can tell from infinity."""
+"""Value for a multiplier that tends to infinity at a border; larger than any multiplier that double precision resolves."""
 COMPLEX_STEP = 1e-200
 """Its square is zero, so that real parts of complex steps are those of real arithmetic; it changes no bit of an ordinary number."""
 
 
 class CycleData(NamedTuple):
-    """The equations of cycles with one word against one parameter, which do not change while a branch is traced; see `cycle_data`."""
+    """The equations of cycles with one word against one parameter, constant while a branch is traced; see `cycle_data`."""
 
     events: np.ndarray
     """Codes of the letters (`orbits.words.alphabet.CODES`), shape (L,)."""
@@ -36,24 +36,24 @@ class CycleData(NamedTuple):
     params: np.ndarray
     """The machine's numbers, shape (P,)."""
     path: np.ndarray
-    """How they follow the parameter that varies, shape (2, P); see `orbits.machines.parameters`."""
+    """How the numbers depend on the varying parameter, shape (2, P); see `orbits.machines.parameters`."""
     twist: float
-    """-1 where the second half of the cycle mirrors the first, else 1."""
+    """-1 if the second half of the cycle mirrors the first, else 1."""
     shift: float
     """Forcing phase from the first event to its return, in radians."""
     pinned: int
-    """0, or, of a motion without impacts, which may be moved as a whole: 2 of half a cycle, 1 of a whole one."""
+    """1 for a motion without impacts, which can be shifted as a whole; 2 for half of a symmetric one; 0 for motions with impacts."""
     active: int
-    """Place of the parameter that varies among the amounts."""
+    """Index of the varying parameter in the amounts."""
     amounts: np.ndarray
-    """Values of all parameters that may vary, shape (Q,); `params` itself without a law."""
+    """Values of all parameters that can vary, shape (Q,); `params` itself without a law."""
     law: np.ndarray
-    """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
+    """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows if they are the numbers themselves."""
     memory: np.ndarray
-    """All of it, as a struct."""
+    """All data as one struct."""
 
     def __reduce__(self) -> tuple[Callable, tuple]:
-        return cycle_data, tuple(self)[:-1]  # the struct holds addresses
+        return cycle_data, tuple(self)[:-1]  # the struct contains addresses
 
 
 def cycle_data(
@@ -68,7 +68,7 @@ def cycle_data(
     amounts: np.ndarray,
     law: np.ndarray,
 ) -> CycleData:
-    """The data from its parts, all of which are copied; see `CycleData`."""
+    """Return the data from its parts, which are copied; see `CycleData`."""
     length, count, powers = len(events), len(params), len(law)
     free = len(amounts) if powers else 0
     head = (length, count, len(amounts), powers, int(pinned), int(active), float(twist), float(shift))
@@ -80,7 +80,7 @@ def cycle_data(
         own_amounts[:], own_law[:] = amounts, law
     else:
         pointers = memory.view(np.int64)
-        pointers[12] = pointers[10]  # of the amounts: the numbers themselves
+        pointers[12] = pointers[10]  # without a law the amounts are the numbers themselves
         own_amounts = own
     return CycleData(
         codes,
@@ -98,25 +98,25 @@ def cycle_data(
 
 
 class Workspace(NamedTuple):
-    """Arrays for one system of L nodes with n unknowns: allocated once, used by every kernel; see `workspace`."""
+    """Arrays for one system of L nodes with n unknowns, allocated once and used by every kernel; see `workspace`."""
 
     F: np.ndarray
     """Residuals, shape (L, n)."""
     A: np.ndarray
-    """Their derivatives by the node before each segment, shape (L, n, n)."""
+    """Derivatives of the residuals by the node before each flight, shape (L, n, n)."""
     D: np.ndarray
-    """Their derivatives by the node after it, shape (L, n, n)."""
+    """Derivatives of the residuals by the node after it, shape (L, n, n)."""
     Q: np.ndarray
-    """Their derivatives by the parameter that varies, shape (L, n)."""
+    """Derivatives of the residuals by the varying parameter, shape (L, n)."""
     numbers: np.ndarray
     """The machine's numbers and their derivatives by that parameter, shape (2 P,)."""
     pin: np.ndarray
-    """The row that a pinned motion replaces, shape (4 n + 2,)."""
+    """The row that replaces an equation of a pinned motion, shape (4 n + 2,)."""
     sines: np.ndarray
-    """Of the phases of the nodes, the first one's return included, shape (L + 1,)."""
+    """Sines of the phases of the nodes, including the return of the first one, shape (L + 1,)."""
     cosines: np.ndarray
     memory: np.ndarray
-    """All of it, and what the native core needs besides, as a struct."""
+    """All arrays, and further memory of the native core, as one struct."""
 
     def __reduce__(self) -> tuple[Callable, tuple]:
         return workspace, (self.F.shape[0], self.F.shape[1], len(self.numbers) // 2)
@@ -125,11 +125,11 @@ class Workspace(NamedTuple):
 LANES, SHORTEST = (
     8,
     32,
-)  # long cycles of two unknowns per node are eliminated in so many segments (native/elimination.hpp)
+)  # long cycles (SHORTEST nodes or more) with two unknowns per node are eliminated in LANES segments (native/elimination.hpp)
 
 
 def workspace(length: int, node: int, parameters: int) -> Workspace:
-    """Arrays for one system of `length` nodes of `node` unknowns and `parameters` numbers."""
+    """Return arrays for one system of `length` nodes of `node` unknowns and `parameters` numbers."""
     size, square = length * node, length * node * node
     lanes = 0
     if node == 2 and length >= SHORTEST:
@@ -158,7 +158,7 @@ def workspace(length: int, node: int, parameters: int) -> Workspace:
 
 
 def jacobian(data: CycleData, work: Workspace) -> np.ndarray:
-    """The derivatives of all residuals by all unknowns, shape (L n, L n), of the linearisation in a workspace."""
+    """Return the derivatives of all residuals by all unknowns, shape (L n, L n), of the linearisation in a workspace."""
     A, D, twist = work.A, work.D, data.twist
     length, n = A.shape[0], A.shape[1]
     whole = np.zeros((length, n, length, n))

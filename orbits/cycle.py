@@ -1,4 +1,4 @@
-"""A cycle: a periodic motion as plain data, and its other descriptions."""
+"""A cycle: a periodic motion as plain data, and its equivalent descriptions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Cycle:
-    """Word, nodes and parameters of a periodic motion P_l^k; whether it solves anything is not asked here.
+    """Word, nodes and parameters of a periodic motion P_l^k; it is not tested here whether it solves equations.
 
     Attributes
     ----------
@@ -32,8 +32,8 @@ class Cycle:
     periods : int
         Forcing periods k; 1 for a self-excited machine.
     nodes : float array (L, n)
-        Of a built-in machine per event (Psi, B+) at impacts and (Psi, w) elsewhere; the coupled machine adds v and v'. Of a declared machine the
-        phase (of a self-excited machine: the duration of the flight that follows) and the states after the event.
+        One row per event. Of a built-in machine (Psi, B+) at impacts and (Psi, w) elsewhere; the coupled machine adds v and v'. Of a declared
+        machine the phase (of a self-excited machine: the duration of the flight that follows) and the states after the event.
     params : float array (P,)
         Parameter vector, in the order of `model.parameter_names`.
     """
@@ -46,12 +46,12 @@ class Cycle:
 
     @classmethod
     def at_rest(cls, model: Varying, params: np.ndarray) -> Self:
-        """The cycle without events of a built-in machine."""
+        """Return the cycle without events of a built-in machine."""
         return cls(model, Word((), ()), 1, np.zeros((0, model.node)), params)
 
     @classmethod
     def of(cls, cycle: Cycle) -> Self:
-        """The same data seen as another kind of cycle."""
+        """Return the same data as an object of this class."""
         return cls(cycle.model, cycle.word, cycle.periods, cycle.nodes, cycle.params)
 
     def __repr__(self) -> str:
@@ -61,17 +61,17 @@ class Cycle:
     # ------------------------------------------------------------------ facts
     @property
     def flow(self) -> Flow:
-        """What happens between its events."""
+        """The flow of the machine."""
         return flow_of(self.model)
 
     @property
     def forced(self) -> bool:
-        """Whether a forcing sets the clock; else the first entry of a node is a duration."""
+        """Whether the machine is forced; otherwise the first entry of a node is a duration."""
         return self.model.forced
 
     @property
     def spelling(self) -> str:
-        """The word as printed: one spelling for one motion; `word` begins where the nodes do."""
+        """The word as printed: one spelling for one motion; `word` itself begins at the first node."""
         return self.word.spelled(self.model.has_mirror(self.params))
 
     @property
@@ -86,7 +86,7 @@ class Cycle:
 
     @property
     def period(self) -> float:
-        """Duration, in the machine's own time."""
+        """Length of the period, in the machine's own time."""
         if not self.forced:
             return float(self.nodes[:, 0].sum())
         return 2.0 * np.pi * self.periods / float(self.model.phase_speed(self.params))
@@ -114,7 +114,7 @@ class Cycle:
 
     @property
     def durations(self) -> np.ndarray:
-        """Clock that passes in each flight, shape (L,): radians of the forcing phase, or time of a self-excited machine."""
+        """Clock of each flight, shape (L,): radians of the forcing phase, or time of a self-excited machine."""
         if not self.forced:
             return self.nodes[:, 0].copy()
         phases = self.nodes[:, 0]
@@ -127,7 +127,7 @@ class Cycle:
 
     # ------------------------------------------------------------------ other descriptions of it
     def root(self) -> Self:
-        """The shortest orbit of which this one is a repetition."""
+        """Return the shortest orbit that this one repeats."""
         same = size_of_one(self.nodes)
         if len(self.word):
             word, periods, nodes = root_orbit(
@@ -141,7 +141,7 @@ class Cycle:
         return replace(self, periods=min(again, default=self.periods))
 
     def repeat(self, times: int) -> Self:
-        """The same orbit, written `times` times."""
+        """Return the same orbit, written `times` times."""
         turn = 2.0 * np.pi * self.periods if self.forced else 0.0
         parts = []
         for copy in range(times):
@@ -152,12 +152,12 @@ class Cycle:
         return replace(self, word=word, periods=periods, nodes=np.concatenate(parts))
 
     def mirror(self) -> Self:
-        """The mirror image: contacts change places, half a forcing period later.
+        """Return the mirror image: contacts change places, half a forcing period later.
 
         Raises
         ------
         ValueError
-            If it is no motion of this machine.
+            If the image is no motion of this machine.
         """
         if not self.model.has_mirror(self.params):
             raise ValueError(
@@ -171,11 +171,11 @@ class Cycle:
 
     @property
     def _strobed(self) -> bool:
-        """Whether it is a forced motion without events, whose nodes are those at phase zero."""
+        """Whether it is a forced motion without events, with nodes at phase zero."""
         return self.forced and not len(self.word) and len(self.nodes) > 0
 
     def _its_own_image(self) -> bool:
-        """The same of a motion without events, whose image is read from any of its forcing periods."""
+        """Return whether a motion without events is symmetric; its image may begin in any of its forcing periods."""
         if not (self.word.mirror_symmetric_halves and self.periods % 2):
             return False
         image, own = (self.flow.without_events(one) for one in (self.mirror(), self))
@@ -185,7 +185,7 @@ class Cycle:
         return any(np.abs(one - own[:, 1:]).max() < size_of_one(self.nodes) for one in turned)
 
     def rotate(self, places: int) -> Self:
-        """The same orbit, read from the event `places` further on."""
+        """Return the same orbit, beginning `places` events later."""
         n = len(self.word)
         if n == 0:
             return self
@@ -196,14 +196,14 @@ class Cycle:
 
 
 def size_of_one(nodes: np.ndarray) -> float:
-    """Distance below which nodes (L, n + 1) are one, of a machine whose states have any size."""
+    """Return the distance below which nodes (L, n + 1) are equal, for states of any size."""
     return SIMULATING.one * (1.0 + float(np.abs(nodes[:, 1:]).max(initial=0.0)))
 
 
 def root_orbit(
     word: Word, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SIMULATING.one
 ) -> tuple[Word, int, np.ndarray]:
-    """The shortest orbit of which this one is a repetition: its word, periods and nodes (l, n), without events one per forcing period."""
+    """Return word, periods and nodes (l, n) of the shortest orbit that this one repeats; without events one node per forcing period."""
     repetitions = word.repetitions if len(word) else len(nodes)
     for times in range(min(repetitions, periods) if forced else repetitions, 1, -1):
         if repetitions % times or (forced and periods % times):
@@ -226,12 +226,12 @@ def is_symmetric(
     forced: bool = True,
     image: np.ndarray | None = None,
 ) -> bool:
-    """Whether the orbit equals its mirror image after half its period.
+    """Return whether the orbit equals its mirror image after half its period.
 
-    `image` are the nodes mirrored, at the same phases; by default all states have the opposite sign.
+    `image` are the mirrored nodes, at the same phases; by default all states change sign.
     """
     if not len(word):
-        return not len(nodes)  # at rest; a forced motion without events: `orbits.cycle`
+        return not len(nodes)  # at rest; forced motions without events are treated in `Cycle.symmetric`
     if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)):
         return False
     half = len(word) // 2
@@ -242,7 +242,7 @@ def is_symmetric(
 
 @cache
 def _direction(size: int) -> np.ndarray:
-    """A direction in which no two different orbits look alike by chance; twice, so that its rotations are parts of it."""
+    """Return a direction on which different orbits have different projections, twice in a row so that its rotations are slices."""
     return np.tile(np.sin(np.arange(1, size + 1) * np.sqrt(2.0)) + 0.1, 2)
 
 
@@ -255,14 +255,14 @@ def canonical(
     forced: bool = True,
     same: float = SIMULATING.one,
 ) -> tuple[Hashable, np.ndarray]:
-    """Key (word and periods) and vector of the orbit's canonical form.
+    """Return key (word and periods) and vector of the orbit's canonical form.
 
-    The vector lists cosine and sine of the phase (or the duration) and the other unknowns of each node, in that one of the rotations
-    (and mirror images, where the machine has them) with the canonical word whose projection on a fixed direction is largest.
+    The vector lists cosine and sine of the phase (or the duration) and the other unknowns of each node. Of all rotations (and mirror images,
+    if the machine has them) with the canonical word, it is the one with the largest projection on a fixed direction.
     """
     word, periods, nodes = root_orbit(word, periods, nodes, forced=forced, same=same)
     target = word.canonical(mirror)
-    image: float | np.ndarray = -1.0  # half a forcing period on cosine and sine change their signs, too
+    image: float | np.ndarray = -1.0  # half a forcing period later cosine and sine change their signs, too
     if forced:
         flat = np.empty((len(nodes), nodes.shape[1] + 1))
         np.cos(nodes[:, 0], out=flat[:, 0])

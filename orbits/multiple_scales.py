@@ -1,4 +1,4 @@
-"""The short name of `orbits.theory.multiple_scales`."""
+"""Short name of `orbits.theory.multiple_scales`."""
 
 from orbits.theory.multiple_scales import *  # noqa: F403
 from orbits.theory.multiple_scales import __all__ as __all__

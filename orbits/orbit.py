@@ -1,4 +1,4 @@
-"""Orbit: one periodic motion, its nodes, its stability, whether a machine can follow it, and how far it is from another one, whatever their words say."""
+"""Orbit: one periodic motion with its stability and admissibility; and the distance of two orbits, independent of their words."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from orbits.settings import BORDERING, EVENTS
 from orbits.simulation.replaying import deviation
 from orbits.words import Margin, approaches_of, limits_of, margin_units, named_margins
 
-REAL = -EVENTS.zero  # margins from here to zero, in units of the machine's own size, are rounding of zero: a border orbit itself is real
-PER_PERIOD = 200  # instants of a forcing period at which motions are compared
-CLOSE = 0.05  # largest difference in position between a border orbit and one that goes on from it, wherever that is measured
-SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on the way to the border
-COARSE = 10  # every so many instants are compared first
-INSTANTS = (
-    PER_PERIOD // 5
-)  # of a period by which motions near a border are compared, where they differ all along
+REAL = (
+    -EVENTS.zero
+)  # margins between this and zero, in units of the machine's own size, count as zero: a border orbit is real
+PER_PERIOD = 200  # instants per forcing period at which motions are compared
+CLOSE = 0.05  # largest difference in position, in units of the machine's size, between a border orbit and an orbit that converges to it
+SHRINKS = 0.5  # a distance that tends to zero shrinks at least by this factor on the way to the border
+COARSE = 10  # step of instants in a first, rough comparison
+INSTANTS = PER_PERIOD // 5  # instants per forcing period for motions near a border
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,18 +44,18 @@ class Orbit(Cycle):
     periods : int
         Forcing periods after which it closes; 1 for a self-excited machine.
     nodes : float array (L, n)
-        A row per event. Of a built-in machine phase and velocity after an impact (position elsewhere), of the coupled one also v and v'; of a
-        declared machine the phase (of a self-excited one: the duration of the flight that follows) and the states after the event.
+        One row per event. Of a built-in machine phase and velocity after an impact (position elsewhere), of the coupled one also v and v'; of
+        a declared machine the phase (of a self-excited one: the duration of the flight that follows) and the states after the event.
     params : float array (P,)
         Parameter vector, in the order of `model.parameter_names`.
     """
 
     marginal: ClassVar[bool] = False
-    """Whether it is that of a special point, at which a multiplier is on the unit circle by definition."""
+    """Whether it is the orbit of a special point, at which a multiplier is on the unit circle by definition."""
 
     # ------------------------------------------------------------------ one look at its equations
     def system(self, symmetric: bool) -> Equations:
-        """Its equations, against the machine's default parameter, or one along which symmetric orbits stay so."""
+        """Return its equations, against the machine's default parameter, or against one that preserves the mirror symmetry."""
         model = self.model
         names = (model.default_parameter, *model.parameter_names)
         lasting = (name for name in names if not symmetric or model.has_mirror(self.params, name))
@@ -64,7 +64,7 @@ class Orbit(Cycle):
 
     @cached_property
     def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
-        """Residual, multipliers of the period and margins."""
+        """Residual, multipliers of the period, and margins."""
         half = self.symmetric and bool(self.flow.loose(self.model, self.word))
         system = self.system(half)
         residual, spectrum, margins = self._looked_at(system)
@@ -81,7 +81,7 @@ class Orbit(Cycle):
 
     @property
     def multipliers(self) -> np.ndarray:
-        """Multipliers of the period, complex, largest modulus first; none of them is trivial."""
+        """Multipliers of the period, complex, largest modulus first; trivial ones are left out."""
         return self._examined[1]
 
     @property
@@ -100,9 +100,9 @@ class Orbit(Cycle):
         return self._looked_at(self.system(symmetric=True))[1]
 
     def with_multipliers(self, multipliers: np.ndarray) -> Self:
-        """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits.
+        """Return the same orbit with given multipliers: at a border, one-sided limits along a branch.
 
-        Where something has no length or speed at all the equations' own derivatives are rounding.
+        If an event has no duration or speed at all, derivatives of the equations themselves are roundoff.
         """
         residual, _, margins = self._examined
         found = copy.copy(self)
@@ -110,26 +110,26 @@ class Orbit(Cycle):
         return found
 
     def critical(self, near: float) -> Self:
-        """The same orbit as one of a special point: the multiplier nearest to the unit circle, if it is within `near` of it, is put onto it."""
+        """Return the orbit as that of a special point: the multiplier nearest to the unit circle, if within `near`, is moved onto it."""
         found = self.with_multipliers(onto_circle(self.multipliers, near))
         vars(found)["marginal"] = True
         return found
 
     @property
     def margins(self) -> list[Margin]:
-        """Margins of admissibility, none negative for a real orbit; in the units of the nodes."""
-        own = self._examined[2]  # of half a symmetric motion that may be shifted
+        """Margins, none negative for a real orbit; in the units of the nodes."""
+        own = self._examined[2]  # only those of half the motion, if it is symmetric and can be shifted
         units = margin_units(self.word, self.model.natural_units(self.params))
         return named_margins(self.word, own * units[: own.size])
 
     @property
     def relative_margins(self) -> list[Margin]:
-        """The same in units of the machine's own size."""
+        """Margins in units of the machine's own size."""
         return named_margins(self.word, self._examined[2])
 
     @property
     def approaches(self) -> np.ndarray:
-        """The margins of the impacts, which are their speeds, in units of the machine's own size."""
+        """Margins of the impacts, which are their speeds, in units of the machine's own size."""
         return approaches_of(self.word, self._examined[2])
 
     @property
@@ -139,22 +139,22 @@ class Orbit(Cycle):
 
     @property
     def real(self) -> bool:
-        """Whether a machine can follow the orbit: no margin is negative. At a border one is zero, and the orbit real."""
+        """Whether a machine can follow the orbit: no margin is negative. At a border one margin is zero, and the orbit real."""
         return self.margin >= 0.0
 
     @property
     def stable(self) -> bool | None:
-        """Whether all multipliers lie inside the unit circle; at special points None, unless one is outside."""
+        """Whether all multipliers lie inside the unit circle; at special points None, or False if one lies outside."""
         sizes = np.abs(self.multipliers)
         return attracts(sizes, 1.0) if self.marginal else bool((sizes < 1.0).all())
 
     def measures(self, *wanted: str) -> dict[str, float]:
-        """Measures by name, all of them if none is named; names: `problem().measure_names`.
+        """Return measures by name, all of them if none is named; names: `problem().measure_names`.
 
         Raises
         ------
         KeyError
-            If there is no measure of a name.
+            If a name is unknown.
         """
         asked = wanted or self.flow.measure_names(self.model)
         values = self.flow.measures(
@@ -163,17 +163,17 @@ class Orbit(Cycle):
         return {name: float(value[0]) for name, value in values.items()}
 
     def measure(self, name: str) -> float:
-        """One measure of the orbit; names: `problem().measure_names`."""
+        """Return one measure of the orbit; names: `problem().measure_names`."""
         return float(self.measures(name)[name])
 
     # ------------------------------------------------------------------ seeing it move
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """The motion over one period, both sides of every jump included.
+        """Sample the motion over one period; each event appears with the states before and after it.
 
         Parameters
         ----------
         points : int
-            About how many; at least two per flight.
+            Approximate number of samples; at least two per flight.
 
         Returns
         -------
@@ -185,37 +185,37 @@ class Orbit(Cycle):
         return self.flow.sample(self, points)
 
     def positions(self, instants: int) -> np.ndarray:
-        """Positions, which no impact changes at once, at so many equal phases of each forcing period, shape (instants * periods, c). They are remembered."""
+        """Return coordinates without jumps at `instants` equal phases of each forcing period, shape (instants * periods, c); cached."""
         known = vars(self).setdefault("_tracks", {})
         if instants not in known:
             known[instants] = self.flow.positions(self, instants)
         return known[instants]
 
     def repeat(self, times: int) -> Self:
-        """The same orbit, written `times` times."""
+        """Return the same orbit, written `times` times."""
         found = super().repeat(times)
         known = vars(self).get("_tracks", {})
         vars(found)["_tracks"] = {instants: np.tile(track, (times, 1)) for instants, track in known.items()}
         return found
 
     def replay(self) -> float:
-        """Largest deviation of the event-driven simulation from the orbit over one period, in units of the machine's own size.
+        """Return the largest deviation of the event-driven simulation from the orbit over one period, in units of the machine's own size.
 
-        Infinite where the simulation meets other events.
+        Infinite if the simulation has other events.
         """
         return deviation(self, lambda: (self._examined[2], self.multipliers))
 
     # ------------------------------------------------------------------ towards continuation
     @hinting
     def problem(self, parameter: str | None = None, symmetric: bool | None = None):
-        """The orbit's word as a continuation problem against `parameter`.
+        """Return the continuation problem of the orbit's word against `parameter`.
 
         Parameters
         ----------
         parameter : str, optional
             Default: `model.default_parameter`.
         symmetric : bool, optional
-            Solve on half the word; default: whether the orbit is symmetric.
+            Solve on half the word; by default if the orbit is symmetric, and stays so along the parameter.
         """
         from orbits.problem import OrbitProblem
 
@@ -229,7 +229,7 @@ class Orbit(Cycle):
         return OrbitProblem(self.model, self.word, self.periods, parameter, self.params, half)
 
     def seed(self, problem: Any) -> tuple[np.ndarray, float]:
-        """Unknowns and parameter value of this orbit in `problem`."""
+        """Return unknowns and parameter value of this orbit in `problem`."""
         if not self.forced and not len(self.word) and self.word.modes:
             return problem.u0, problem.p0
         return problem.reduce(self.nodes), problem.value(self.params)
@@ -241,15 +241,15 @@ class Orbit(Cycle):
         Parameters
         ----------
         bits : int, optional
-            Precision to begin with.
+            First precision to try.
         **parameters
-            Exact values, as decimals (``amplitude="1.0735"``) or balls (``amplitude=("0.6", "1e-6")``); else the shortest decimals of
+            Exact values, as decimals (``amplitude="1.0735"``) or balls (``amplitude=("0.6", "1e-6")``); by default the shortest decimals of
             the orbit's floats.
 
         Returns
         -------
         orbits.proofs.proof.Proof
-            `real` and `stable` are True, False or None (not proved); `box` encloses the one solution, `obstacles` say what is not proved.
+            `real` and `stable` are True, False or None (not proved); `box` encloses the unique solution, `obstacles` lists what is not proved.
 
         Raises
         ------
@@ -272,7 +272,7 @@ class Orbit(Cycle):
         return portrait(self, **options)
 
     def animate(self, path: str | Path | None = None, **options: Any):
-        """Show the orbit in motion; with a path it is written to a gif, mp4 (by ffmpeg) or html file.
+        """Show the orbit in motion, or write the animation to `path` as a gif, mp4 (by ffmpeg) or html file.
 
         Options are those of :func:`orbits.plots.animation.animate`.
         """
@@ -281,13 +281,13 @@ class Orbit(Cycle):
         return animate(self, path, **options)
 
     def scene(self, points: int = 120) -> dict[str, Any]:
-        """The orbit as plain numbers for a page that draws it; see `orbits.plots.shown.scene`."""
+        """Return the orbit as plain numbers for a web page that draws it; see `orbits.plots.shown.scene`."""
         from orbits.plots.shown import scene
 
         return scene(self, points)
 
     def to_dict(self) -> dict[str, Any]:
-        """The orbit as JSON: events, multipliers, margins."""
+        """Return the orbit ready for JSON: events, multipliers, margins."""
         return {
             "word": self.spelling,
             "periods": self.periods,
@@ -304,7 +304,7 @@ class Orbit(Cycle):
 
 
 def examined(system: Equations, u: np.ndarray, p: float) -> tuple[float, np.ndarray, np.ndarray]:
-    """Residual, multipliers of the closure map and margins at unknowns and a parameter value; the linearisation stays in the scratch."""
+    """Return residual, multipliers of the closure map and margins of a solution; the linearisation remains in `system.scratch`."""
     count = 2 * system.n_multipliers
     row = np.empty(count + system.n_margins)
     residual = system.kernels.examine(system.data, u, p, system.scratch, row)
@@ -312,14 +312,16 @@ def examined(system: Equations, u: np.ndarray, p: float) -> tuple[float, np.ndar
 
 
 def tends(close: float, further: Callable[[], float]) -> bool:
-    """Whether an orbit tends to a border orbit, from its distance measured twice: the larger one, of the same orbit further away, is asked for
-    where it matters. An orbit that is only similar keeps its distance.
+    """Return whether an orbit converges to a border orbit as it approaches the border.
+
+    `close` is its distance from the border orbit. `further`, called only if needed, returns the distance of the same branch's orbit further
+    away from the border: an orbit that is merely similar keeps its distance.
     """
     return close < BORDERING.together or (close < CLOSE and close < SHRINKS * further())
 
 
 def gap(border: Orbit, near: Orbit) -> float:
-    """The distance of orbits of one branch, or of a branch and its border, which need not be moved: from fewer instants."""
+    """Return the distance of two orbits of one branch, or of a branch and its border, from fewer instants and without shifts of the phase."""
     if border.periods != near.periods or not border.forced:
         return distance(border, near)
     unit = border.model.natural_units(border.params)[0]
@@ -328,10 +330,10 @@ def gap(border: Orbit, near: Orbit) -> float:
 
 
 def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER_PERIOD) -> float:
-    """Largest difference of positions at so many equal phases of each period, modulo whole periods, and the mirror image if asked for.
+    """Return the largest difference of positions at equal phases, minimised over shifts by whole periods (and the mirror image, if `mirror`).
 
-    In units of the machine's size. Where one of them may be shifted as a whole (it hits no wall) its mean position is free, and left out.
-    Of self-excited motions, which have no phase in common: of periods and extremes, relative to 1 + these.
+    In units of the machine's size. If one of them can be shifted as a whole (it hits no wall) mean positions are ignored. Self-excited motions
+    have no common phase: they are compared by periods and extremes, relative to 1 + size.
     """
     if not one.forced:
         images = [one, one.mirror()] if mirror else [one]
@@ -363,20 +365,20 @@ def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER
 
 
 def _free(one: Orbit, other: Orbit) -> np.ndarray:
-    """Which positions may be shifted as a whole."""
+    """Return which positions can be shifted as a whole."""
     loose = {*one.flow.loose(one.model, one.word), *other.flow.loose(other.model, other.word)}
     return np.array([entry in loose for entry in one.flow.position_entries(one.model)])
 
 
 def _largest(gap: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Largest entry of a gap (..., instants, c); of those that are free half their range counts."""
+    """Return the largest entry of a difference (..., instants, c); for free positions half the range."""
     if not free.any():
         return np.abs(gap).max(axis=(-2, -1))
     return np.where(free, 0.5 * np.ptp(gap, axis=-2), np.abs(gap).max(axis=-2)).max(axis=-1)
 
 
 def _unlike(one: Orbit, other: Orbit) -> float:
-    """How much periods and extremes (of positions that may be shifted: how far they go) differ."""
+    """Return the largest difference of periods and extremes (for free positions: ranges), relative to 1 + size."""
     names = [f"{side}_{state}" for state in one.model.node_names[1:] for side in ("max", "min")]
     free = {
         one.model.node_names[entry]

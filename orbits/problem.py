@@ -202,7 +202,7 @@ class OrbitProblem(Motions):
         return [self._smoothly(seed) for seed in cross(self, point)]
 
     def onward(self, point: BorderPoint) -> Sequence[Seed]:
-        """Return the orbits beyond a border that need no switch; those of another period or symmetry only if there are no others."""
+        """Return the branches beyond a border, without orbits of less symmetry or longer period unless there are no others."""
         return [self._smoothly(seed) for seed in cross(self, point, every=False)]
 
     def _smoothly(self, seed: Seed) -> Seed:

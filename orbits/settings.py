@@ -1,8 +1,8 @@
-"""Tolerances of the machines and of their motions, in groups by what they decide.
+"""Tolerances of machines and motions, in groups by purpose.
 
-Nobody has to set them: they follow from double precision and from lengths and speeds in a machine's own units, in which all of them are
-counted. What users choose are the settings of a continuation (`contvines.Settings`). Facts of floating point: `orbits.arguments`; limits of
-parameters: the machines' tables.
+Users need not set them: they follow from double precision and from lengths and speeds in a machine's own units, which they refer to.
+Users choose the settings of a continuation (`contvines.Settings`). Constants of floating-point arithmetic are in `orbits.arguments`, limits
+of parameters in the machines' tables.
 """
 
 from __future__ import annotations
@@ -12,28 +12,28 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Solving:
-    """When Newton's method has arrived at a motion.
+    """Convergence of Newton's method to a motion.
 
     Attributes
     ----------
     residual, scaled : float
-        Largest residual of a solution; of one found by simulation or from a guess, in units of its unknowns above 1.
+        Largest residual of a solution; the second for solutions from a simulation or a guess, relative to unknowns above 1.
     last_step : float
         Largest change of unknowns in the last step.
     near, rounding : float
-        A smaller step is the last one, too, where the residual after it is rounding: less than `rounding`.
+        A step below `near` is also the last one if the residual after it is below `rounding`.
     free_step : float
-        Length of a step that is taken even if the residual grows.
+        A step below this length is accepted even if the residual grows.
     longest_flight : float
-        Clock of one flight beyond which the iteration has lost its way.
+        Longest flight, in the clock; if a flight is longer, the iteration has diverged.
     shift : float
-        Change of the parameter, relative, with which a secant or a difference begins.
+        Relative change of the parameter in the first secant or in a difference quotient.
     mesh_error : float
-        Of cycles without events, by collocation.
+        Error of the mesh of cycles without events, by collocation.
     equilibrium : float
-        How far from a state at which a motion has come to rest the equilibrium may be, relative to 1 + its size.
+        Largest distance of an equilibrium from a state at which a motion has come to rest, relative to 1 + size of the state.
     safe_product : float
-        Product of the factors' norms up to which their product keeps the multipliers that matter.
+        Largest product of the factors' norms for which the multipliers of the product of all factors are accurate enough.
     """
 
     residual: float = 1e-10
@@ -51,26 +51,26 @@ class Solving:
 
 @dataclass(frozen=True)
 class Events:
-    """What is zero when an event is looked for, in simulation and in flights between two nodes.
+    """Numbers that count as zero in the search for events, in simulation and in flights between two nodes.
 
     Attributes
     ----------
     zero : float
-        Gaps and phases that differ by less, relative to 1 + the states, differ by rounding.
+        Differences of gaps and phases below this, relative to 1 + size of the states, are roundoff.
     together : float
-        A quantity this close to zero, relative to 1 + its rate, vanishes together with another; hops that rise no higher have piled up.
+        A quantity below this, relative to 1 + its rate, vanishes together with another one; hops below this height have accumulated.
     touch : float
-        Rate below which a surface is touched, not crossed; an impact that is slower vanishes.
+        Rate below which a surface is touched and not crossed; a slower impact vanishes.
     slow : float
-        Speed at a wall, squared where it is compared with a height, below which impacts may be piling up.
+        Speed at a wall (squared, if compared with a height) below which impacts may be accumulating.
     hop : float
-        Clock to the top of a hop whose end may be lost beside its beginning; on a longer one other events may come first.
+        Longest clock to the top of a hop whose end may be missed so close to its beginning; in a longer hop other events may come first.
     leave : float
-        Clock after which a quantity that starts from zero without a rate has grown out of rounding.
+        Clock after which a quantity that starts from zero without a rate exceeds roundoff.
     at_end : float
-        Share of a flight, next to its ends, in which a guard that vanishes does so at that end.
+        Share of a flight at its ends: a guard that vanishes there vanishes at that end.
     still : float
-        Range of a state, or shift over a period, of what does not move.
+        Range of a state that does not move; also the largest shift over a period of a motion that returns.
     """
 
     zero: float = 1e-12
@@ -85,16 +85,16 @@ class Events:
 
 @dataclass(frozen=True)
 class Growing:
-    """Sizes next to a border, at which an event appears or vanishes.
+    """Sizes near a border at which an event appears or vanishes.
 
     Attributes
     ----------
     first : float
-        Clock, or speed, of what grows from zero beyond a border, in the first guess.
+        Clock, or speed, of the component that grows from zero beyond a border, in the first guess.
     short : float
         Clock of a stick, or between a turn and the stick after it, that is about to vanish.
     close : float
-        Clock between two events of one contact between which nothing else can be.
+        Clock between two events of one contact that leaves no space for another event.
     """
 
     first: float = 2e-3
@@ -104,35 +104,35 @@ class Growing:
 
 @dataclass(frozen=True)
 class Bordering:
-    """What is next to a border, and what begins there. Distances in the parameter are in its unit, sizes in the machine's own.
+    """The neighbourhood of borders, and branches that begin there. Distances in the parameter are in its unit, sizes in the machine's own.
 
     Attributes
     ----------
     sizes : tuple of tuples of float
-        Sizes of what grows beyond a border, from large to small: ways to try.
+        Sizes of the component that grows beyond a border, from large to small: each tuple is one attempt.
     beside : tuple of float
-        Distances from a border at which the branch that ends there is looked at.
+        Distances from a border at which the branch that ends there is solved.
     away : tuple of float
-        Distances in the parameter at which simulation begins, the second where the first finds nothing; next to where friction holds, the second.
+        Distances in the parameter at which simulation begins, the second if the first finds nothing; near the slip of a rest only the second.
     regular, turning, slipping : tuple of float
-        Distances at which a motion is solved for: one whose equations are regular at the border, one whose branch turns back close to it, and
-        the stick-slip motion beside rest.
+        Distances at which a motion is solved: with regular equations at the border; on a branch that turns back close to it; and for the
+        stick-slip motion near rest.
     together : float
-        Margins, speeds and durations so small vanish together; motions that differ by less are one.
+        Margins, speeds and durations below this vanish together; motions that differ by less are the same.
     shown : float
-        Margins so small may be zero: their signs are asked for further away.
+        Margins below this may be zero: their signs are determined further away.
     unresolved : float
-        Speed of an impact after which margins do not show the way, the square of it.
+        Speed after an impact below which margins do not decide, because its square is roundoff.
     slow : float
-        Speed of an impact, or distance of a turn from a wall, that says that they pile up.
+        Speeds of impacts, or distances of turns from a wall, below this show an accumulation of impacts.
     placed : float
-        Distance in the parameter of places that are one.
+        Parameter values that differ by less are the same.
     growing : float
-        Least growth of a margin with the distance.
+        Smallest growth of a margin per distance.
     steep : float
         Change of the nodes with the parameter beyond which a fold is close.
     least_flight : float
-        Clock of a flight of a guess, at least.
+        Shortest flight of a guess, in the clock.
     """
 
     sizes: tuple[tuple[float, ...], ...] = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))
@@ -153,14 +153,14 @@ class Bordering:
 
 @dataclass(frozen=True)
 class Rounding:
-    """When derivatives of the rounds of a cycle beside a border decide what leaves there.
+    """Accuracy of derivatives of a cycle's rounds near a border, from which the branches that leave there are determined.
 
     Attributes
     ----------
     sure : float
-        Relative error of a derivative that is of use.
+        Largest relative error of a useful derivative.
     decided : float
-        Part of the largest determinant below which one has no sign to rely on.
+        Share of the largest determinant below which the sign of a determinant is uncertain.
     """
 
     sure: float = 1e-3
@@ -169,50 +169,50 @@ class Rounding:
 
 @dataclass(frozen=True)
 class Simulating:
-    """What a simulation says of a motion. Distances of points are relative to 1 + the points.
+    """Evaluation of simulated motions. Distances of points are relative to 1 + size of the points.
 
     Attributes
     ----------
     nudge : float
-        Small displacements: of differences, of the neighbour whose growth is measured, of the velocity from one value of a sweep to the next.
+        Small displacements: in differences, of the neighbour whose growth is measured, of the velocity between two values of a sweep.
     whole : float
-        Forcing periods that miss a whole number, or a given instant, by less do so by rounding.
+        Forcing periods that differ by less from a whole number, or from a given time, are equal to it.
     returned, returned_page, returned_many : float
-        Distance of two points of a motion that has returned; of an integrated one; of one of many that are simulated at once.
+        Largest distance of two points of a motion that has returned; for integrated motions; for many motions simulated together.
     nearly : float
-        Distance at which it may have returned, and at which a settled point belongs to a solved motion.
+        Largest distance of points that may be a return; also of a settled point from the solved motion to which it belongs.
     closed : float
-        Distance of a return that only a motion on a cycle has, be the cycle stable or not.
+        Distance of a return that is possible only on a cycle, stable or unstable.
     one : float
-        Distance of points, or nodes, that are one, and of motions that are known in closed form.
+        Largest distance of equal points or nodes, and of equal motions in closed form.
     same : float
-        Distance of two descriptions of one motion, and of integrated motions that are one: grazes are known to the root of their error.
+        Largest distance of two descriptions of one motion, and of equal integrated motions: near a graze the error is a square root.
     far : float
-        Distance of neighbours that tells nothing of small differences.
+        Distance of neighbours beyond which the growth of small differences cannot be measured.
     wait : float
-        Clock of a self-excited machine without an event after which none is waited for.
+        Longest clock without an event of a self-excited machine.
     falling : float
-        Distance at which a motion that comes nearer falls onto a known one.
+        Distance from a known motion below which an approaching motion settles on it.
     neutral : float
-        Multipliers this close to the circle neither attract nor repel.
+        Multipliers this close to the unit circle neither attract nor repel.
     settled : float
-        Relative change of an oscillator that has settled, from one look to the next.
+        Relative change of an oscillator that has settled, between two comparisons.
     held : float
-        Part of the forces: friction that is short of no more may hold.
+        Friction that lacks less than this share of the forces may hold.
     resting : float
-        Part of the room between walls: what reaches less rests.
+        Share of the space between walls; a motion that reaches less is at rest.
     steady : float
-        Part of the way by which the ways of a creeping motion may differ.
+        Share of the displacement by which the displacements of a creeping motion may differ.
     lost : float
-        Factor that stands for the growth of a difference that a stick has lost.
+        Growth factor used when a stick has made two neighbours equal.
     at_once : float
         Phase from a touch to the stick that follows it.
     late : float
-        Part of the time for which motions that do not recur are followed: what recurs later has been like them until then.
+        Share of the time for which motions are followed; motions that recur later than this count like those that do not recur.
     lives : float
-        Mean lives of a chaotic transient for which one is waited for that may end.
+        Mean lives of a chaotic transient for which a motion is followed that may still settle.
     peak : float
-        Phases of a peak that differ by less: the peak is known to the square of it.
+        Phases of a peak that differ by less are equal: the peak is accurate to the square of it.
     """
 
     nudge: float = 1e-7
@@ -241,34 +241,34 @@ class Simulating:
 
 @dataclass(frozen=True)
 class Replaying:
-    """When simulation agrees with a claimed orbit.
+    """Agreement of a simulation with a computed orbit.
 
     Attributes
     ----------
     followed : float
         Largest deviation of a simulation that follows an orbit at a border.
     agreed : float
-        Deviation that needs no second look.
+        Deviation below which no second test is needed.
     close : float
-        Margins, and clocks of flights, below which rounding may make one event of two, or swap them; phase by which an event may be early.
+        Margins, and clocks of flights, below which roundoff may merge or swap two events; also the phase by which an event may be early.
     definite : float
-        Strength of an event from which a simulation starts without doubt.
+        Strength of an event from which a simulation starts safely.
     wild : float
-        Multipliers above this blow rounding up within a period.
+        Multipliers above this amplify roundoff strongly within a period.
     displaced, back : float
-        Distance of a start off a stable orbit, and at which it is back; an orbit is known to the first at least.
+        Distance of a start from a stable orbit, and distance at which it has returned; orbits are accurate to at least the first.
     nearer : tuple of (float, float)
-        The same of orbits that attract from near by only.
+        The same pairs for orbits that attract only from nearby.
     beside_folds, shrunk : tuple of float, float
-        Distances of starts beside folds, of which no more than this part is to be left.
+        Distances of starts near folds, and the share of them that may remain.
     forgotten : float
-        Part of a displacement that is left when it is looked at again.
+        Share of a displacement that remains at the second measurement.
     loss : float
-        Distance at which an orbit that is followed is lost.
+        Distance from the orbit at which a simulation no longer follows it.
     rounding : float
-        Of a simulated node.
+        Roundoff of a simulated node.
     slope, slope_error : float
-        First step of differences of the return map, and the estimated error of a derivative that asks for no smaller one.
+        First step of differences of the return map, and the estimated error of a derivative that needs no smaller step.
     """
 
     followed: float = 1e-6
@@ -290,28 +290,28 @@ class Replaying:
 
 @dataclass(frozen=True)
 class Designing:
-    """Estimates from measurements, searches for the best value, and numbers that are given twice.
+    """Estimates from measurements, searches for the best value, and redundant data.
 
     Attributes
     ----------
     difference : float
         Relative step of differences while parameters are estimated.
     effect : float
-        Least step, of the limits' span, of differences that tell how well they are known.
+        Smallest step, relative to the span of the limits, of differences for the accuracy of estimates.
     estimated, flat : float
-        Relative change of parameters and residuals, and the gradient, where the estimate ends.
+        Relative change of parameters and residuals, and gradient, at which an estimate ends.
     independent : float
-        Ratio of the smallest to the largest effect of a parameter below which the data do not depend on it.
+        Ratio of the smallest to the largest effect of parameters below which the data do not determine all of them.
     accuracy, level : float
-        Of a best value, of the search interval; and of the outcome there.
+        Accuracy of a best value, relative to the search interval; and of the outcome there.
     agreement : float
-        Two ways to give one number, or two responses of one motion, may differ by so much of it (printed data are rounded).
+        Largest relative difference of a number given in two ways, or of two responses of one motion (printed data are rounded).
     narrow : float
-        Least step towards the largest response, of the interval.
+        Smallest step towards the largest response, relative to the interval.
     exhausted : float
-        Part of the energy that is lost in a period of a decay that has ended.
+        Share of the energy lost per period below which a decay has ended.
     endless : float
-        Amplitude above which a response has no bound.
+        Amplitude above which a response counts as unbounded.
     """
 
     difference: float = 1e-5
@@ -329,34 +329,34 @@ class Designing:
 
 @dataclass(frozen=True)
 class Proving:
-    """Where floats guide a proof; nothing that is proved rests on these.
+    """Guidance of proofs by floating-point numbers; no proved statement depends on these.
 
     Attributes
     ----------
     near : float
-        Distance of nodes that are one: of what is proved and what was computed, of an orbit and its mirror image.
+        Largest distance of equal nodes: of proof and computation, or of an orbit and its mirror image.
     rounded : float
-        Newton corrections below this may stop shrinking: they are rounding.
+        Newton corrections below this may stop shrinking: they are roundoff.
     short : float
         Clock of a flight whose ends may be merged.
     narrow : float
-        Half a tile about a special point from which floats can go on.
+        Half-width of a tile about a special point from which floating-point numbers can continue.
     least_tile, graded : float
-        A tile's least share of a piece, and the factor by which it may be smaller near special points.
+        Smallest share of a tile in a piece, and the factor by which it may be smaller near special points.
     inside : float
-        Part of the way into a piece at which its side of a special point is looked at.
+        Fraction of a piece at which its side of a special point is determined.
     overlap : float
-        Part of a least tile by which the last one goes beyond the end.
+        Share of a smallest tile by which the last tile passes the end.
     rough : float
-        Relative error of a determinant that another arithmetic finds apart from 0, too.
+        Relative error of a determinant below which another arithmetic also separates it from 0.
     critical : float
-        Multipliers this close to the circle are told from it by exact eigenvectors.
+        Multipliers this close to the unit circle are separated from it by exact eigenvectors.
     real : float
-        Share of a multiplier's imaginary part that is none.
+        Relative imaginary part of a real multiplier.
     mixed, singular : float
-        Condition from which on eigenvectors are nearly parallel, and a basis is none.
+        Condition number from which eigenvectors are nearly parallel, and from which a basis is singular.
     largest : float
-        Numbers above this leave the range in which their squares are numbers.
+        Numbers above this are out of range, because their squares overflow.
     """
 
     near: float = 1e-6
@@ -382,17 +382,17 @@ class Stepping:
     Attributes
     ----------
     forever : float
-        Forcing periods: the most that one call follows a motion.
+        Longest time of one call, in forcing periods.
     chatter : float
-        Time in which all further impacts of a chatter happen, below which the absorber is put to rest.
+        Time for all further impacts of a chatter, below which the absorber is put to rest.
     still : float
-        Speed after an impact, or time, that is none.
+        Speed after an impact, or time, that counts as zero.
     least_speed : float
-        That of an impact which roundoff leaves none.
+        Smallest speed of an impact; roundoff may leave less.
     leave : float
-        Time by which a zero is left behind, at least, when the next one is looked for.
+        Shortest time after a zero before the search for the next one.
     slip : float
-        Phase by which a slip may miss the instant at which friction gives way: the equations solve for it.
+        Largest phase error of a slip relative to the instant at which friction yields: nodes solve for it.
     """
 
     forever: float = 1e7
@@ -405,7 +405,7 @@ class Stepping:
 
 @dataclass(frozen=True)
 class Integrating:
-    """Error of a step of scipy's integrator (heyoka's goes to rounding by itself), relative and absolute."""
+    """Relative and absolute error of a step of SciPy's integrator (heyoka works to roundoff)."""
 
     relative: float = 1e-13
     absolute: float = 1e-14
@@ -413,18 +413,18 @@ class Integrating:
 
 @dataclass(frozen=True)
 class Formulas:
-    """What a machine file's formulas, a structure's matrices and polynomials with known roots are held to.
+    """Tests of a machine file's formulas, of a structure's matrices, and of roots of polynomials.
 
     Attributes
     ----------
     same : float
-        Relative difference of numbers that a formula gives in two ways, or of a matrix and its transpose.
+        Largest relative difference of two evaluations of one formula, or of a matrix and its transpose.
     zero : float
-        Share of the largest below which an effect, or a natural frequency squared, is none.
+        Share of the largest value below which an effect, or a squared natural frequency, is zero.
     real : float
-        Relative imaginary part of a root that is real.
+        Relative imaginary part of a real root.
     runaway : float
-        Size of a state beyond which it is no fault of a formula that it is no number.
+        Size of a state beyond which the motion, not a formula, is the cause of an undefined value.
     """
 
     same: float = 1e-8
@@ -435,16 +435,16 @@ class Formulas:
 
 @dataclass(frozen=True)
 class Theory:
-    """Of the method of multiple scales.
+    """Tolerances of the method of multiple scales.
 
     Attributes
     ----------
     rounding : float
-        Coefficients and squared amplitudes, relative to the largest, that are rounding.
+        Coefficients and squared amplitudes below this, relative to the largest, are roundoff.
     off_end : float
         Distance (radians, or velocity) from an end of a manifold's piece, where its slope is infinite.
     relative, absolute : float
-        Error of a step in integrating the slow flow.
+        Error of a step in the integration of the slow flow.
     """
 
     rounding: float = 1e-14

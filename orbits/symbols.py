@@ -1,7 +1,7 @@
-"""Elementary functions on numbers, arrays and symbols alike: the functions of machine files.
+"""Elementary functions of numbers, arrays and symbols: the functions for machine files.
 
-A page is run once with symbols in place of numbers. The operators ``+ - * / **`` and the functions of this module are
-recorded; what cannot be recorded (a comparison, ``abs``, ``math.cos``) is refused with a sentence that says the way out.
+A machine file's formulas are called once with symbols in place of numbers, which records the operators ``+ - * / **`` and the functions of this
+module. Operations that cannot be recorded (a comparison, ``abs``, ``math.cos``) raise an error with a remedy.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
     Plain: TypeAlias = "Symbol | float | np.ndarray"
 
-LARGEST_PRODUCT = 64  # whole powers up to this are written as products
+LARGEST_PRODUCT = 64  # largest integer power written as products
 
 
 class NotAnalytic(TypeError):
-    """A formula of a machine file asks of a symbol what has no single analytic expression, as a comparison."""
+    """A formula of a machine file applies an operation to a symbol, such as a comparison, that is no single analytic expression."""
 
 
 def _refuse(what: str) -> NoReturn:
@@ -35,14 +35,14 @@ def _refuse(what: str) -> NoReturn:
 class Symbol:
     """An expression in the states, the phase and the parameters of a machine.
 
-    Expressions that are written alike are one object, so that what occurs twice is worked out once.
+    Equal expressions are one object, so that each is evaluated only once.
 
     Attributes
     ----------
     operation : str
         "variable", "number", an operator, or the name of an elementary function.
     operands : tuple
-        The name, the number, or the Symbols that it is made of.
+        The name, the number, or the operands as Symbols.
     """
 
     __slots__ = ("__weakref__", "operands", "operation")
@@ -65,7 +65,7 @@ class Symbol:
 
     @property
     def number(self) -> float | None:
-        """Its value, where it is a number."""
+        """Its value if it is a number, else None."""
         return self.operands[0] if self.operation == "number" else None
 
     def _with(self, combine: Callable, other: Plain, turned: bool = False) -> Symbol:
@@ -102,7 +102,7 @@ class Symbol:
         return self._with(_quotient, other, turned=True)
 
     def __pow__(self, other: Plain) -> Symbol:
-        # products: the Taylor recursion of a general power divides by its base, which may be zero
+        # as products, because the Taylor recursion of a general power divides by its base, which may be zero
         if isinstance(other, Real) and float(other).is_integer() and 1 <= float(other) <= LARGEST_PRODUCT:  # type: ignore[arg-type]
             half, odd = divmod(int(other), 2)  # type: ignore[call-overload]
             root = self**half if half else None
@@ -178,7 +178,7 @@ def _method(name: str) -> Callable:
 
 
 for _name in ("cos", "sin", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh"):
-    setattr(Symbol, _name, _method(_name))  # numpy's functions look for these
+    setattr(Symbol, _name, _method(_name))  # called by numpy's functions
 for _name in ("sin", "cos", "tan"):
     setattr(Symbol, f"arc{_name}", _method(f"a{_name}"))
 
@@ -199,7 +199,7 @@ for _name, _what in {
 
 
 class Elementary(Protocol):
-    """An elementary function: of a symbol a symbol, of a number a number, of an array an array."""
+    """An elementary function: returns a symbol for a symbol, a number for a number, an array for an array."""
 
     @overload
     def __call__(self, x: Symbol, /) -> Symbol: ...
