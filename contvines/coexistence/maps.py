@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
 TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur before
+ZERO = (
+    np.finfo(float).eps ** 2
+)  # of the box: what decays to zero geometrically is zero, not an unknown of that size
 LONGEST = 64  # of the cycles looked for
 GROWTH, BLOCKS = 4000, 20  # iterations for a Lyapunov exponent, and blocks of them for its error
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
@@ -95,6 +98,7 @@ class MapPopulation(StartsInBox):
     ) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         index = np.full(len(x), -1)
         motions: list[Motion[Problem]] = []
+        cycles: dict[int, np.ndarray] = {}  # index of the motion -> points
         for i in range(len(x)):
             if index[i] >= 0:
                 continue
@@ -105,16 +109,24 @@ class MapPopulation(StartsInBox):
                 here = periods == 0
                 motions.append(self._wandering(x[i], p))
             else:
+                period = int(periods[i])
                 cycle = [x[i]]
-                for _ in range(periods[i] - 1):
+                for _ in range(period - 1):
                     cycle.append(step(cycle[-1][None])[0])
-                points = np.array(cycle)
+                guess = np.array(cycle)
+                solved = self._solved(guess, p)
+                near = solved is not None and np.abs(solved - guess).max() < MAPS.apart * self.size
+                points = solved if solved is not None and near else guess
+                points[np.abs(points) < ZERO * self.size] = 0.0
                 gaps = np.abs(x[:, None, :] - points[None]).max(axis=2).min(axis=1)
-                here = (gaps < MAPS.near * self.size) & (periods == periods[i])
+                here = (gaps < MAPS.near * self.size) & (periods == period)
+                same = [k for k, known in cycles.items() if len(known) == period and self._one(points, known)]
+                if same:  # approached so slowly that the starts stand apart
+                    index[i] = same[0]
+                    continue
+                cycles[len(motions)] = points
                 problem = self.problem.cycle_through(points, p)
-                motions.append(
-                    Motion("periodic", f"{periods[i]}-cycle", int(periods[i]), problem, points.ravel())
-                )
+                motions.append(Motion("periodic", f"{period}-cycle", period, problem, points.ravel()))
             here[i] = True
             index[here & (index < 0)] = len(motions) - 1
         return motions, index, np.zeros(len(x), dtype=bool)

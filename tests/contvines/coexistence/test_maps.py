@@ -47,3 +47,13 @@ def test_shares_of_henons_basin_are_within_three_sigma_of_counts_from_elsewhere(
     share = np.mean(index == [m.kind for m in motions].index("chaotic"))
     for other, count in ((counted, 8192), (0.451, 1000)):
         assert abs(share - other) < 3 * np.sqrt(other * (1 - other) / count)
+
+
+@pytest.mark.parametrize(("p", "expected"), [(0.5, [0.0]), (0.996, [0.0]), (1.3, [-(0.3**0.5), 0.3**0.5])])
+def test_each_fixed_point_is_found_once(p, expected):
+    """x -> p x - x^3: zero is reached geometrically, as p^n; it is no fixed point of the size at which floats end, nor several beside p = 1."""
+    problem = cv.MapProblem(lambda x, p: [p * x[0] - x[0] ** 3], [0.1], 0.5)
+    population = problem.population(box=[(-0.6, 0.7)])
+    motions, index, _ = population.settle(population.starts(64, 0, p), p)
+    found = sorted(float(motion.u[0]) for motion in motions)
+    assert found == pytest.approx(expected, abs=1e-12) and set(index) == set(range(len(expected)))
