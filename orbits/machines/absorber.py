@@ -1,11 +1,12 @@
 """The reduced absorber: a mass with dry friction in a cavity that is shaken harmonically, and its exact orbits.
 
 With a = (1 + eps) mu g, R = (1 - r)/(1 + r), H = (pi/2) a / Omega^2 and the absorber's mean velocity
-B = Omega beta + pi a / (2 Omega) after an impact, the symmetric orbit with two impacts per period obeys
+B = Omega beta + pi a / (2 Omega) after an impact, the symmetric orbit with two impacts per period satisfies
 
     C sin Psi = 1 - (pi/2) beta,    C cos Psi = R beta + H,    C^2 = (1 - pi beta/2)^2 + (R beta + H)^2.
 
-This is the slow invariant manifold of Youssef, Karoui, Leine (`orbits.theory.manifolds`), exact at any Omega with beta for B and H for h.
+This is the slow invariant manifold of Youssef, Karoui, Leine (`orbits.theory.manifolds`) with beta for B and H for h; it is exact at any
+Omega.
 """
 
 from __future__ import annotations
@@ -53,11 +54,11 @@ class Absorber(Model):
     frequency : float
         Omega > 0, excitation frequency over omega_0.
     contact_time : float, optional
-        Duration of an impact in 1/omega_0, which moves nothing: with it orbits have the measure ``peak_force``.
+        Duration of an impact in 1/omega_0, only for the measure ``peak_force``; the motion does not depend on it.
 
     Notes
     -----
-    The amplitude C (in units of b) belongs to each orbit, not to the machine. Source: Youssef, Karoui, Leine, the
+    The amplitude C (in units of b) is given with each orbit, not with the machine. Source: Youssef, Karoui, Leine, the
     model of the impact map section.
     """
 
@@ -82,7 +83,7 @@ class Absorber(Model):
     )
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        """Nodes of the words in closed form: `LR`, `RL`, `tt`, `susu`."""
+        """Yield the nodes of the words `LR`, `RL`, `tt` and `susu` in closed form."""
         if periods != 1:
             return
         events = "".join(word.events)
@@ -100,7 +101,7 @@ class Absorber(Model):
 
     @hinting
     def symmetric_orbit(self, amplitude: float, stable: bool = True):
-        """The symmetric orbit `LR` with two impacts per period, in closed form.
+        """Return the symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters
         ----------
@@ -122,13 +123,13 @@ class Absorber(Model):
 
 
 def _loss_and_level(params: np.ndarray) -> tuple[float, float]:
-    """R and H, of whose manifold the orbits are points: B of the literature is beta here."""
+    """Return R and H of the manifold that contains the orbits; B of the literature is beta here."""
     _, r, mu, g, eps, omega = (float(value) for value in params[:6])
     return float(manifolds.impact_loss(r)), float(manifolds.friction_level(mu, g, eps)) / omega**2
 
 
 def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
-    """Nodes (Psi, B+) at L and R of the symmetric orbit, shape (2, 2).
+    """Return nodes (Psi, B+) at L and R of the symmetric orbit, shape (2, 2).
 
     Parameters
     ----------
@@ -152,12 +153,12 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     beta = float(manifolds.velocity_at(max(C, least), R, H, 1 if stable else -1))
     psi = float(np.arctan2(1.0 - 0.5 * np.pi * beta, R * beta + H)) % (2.0 * np.pi)
     speed = omega * (beta + H)  # B+ = Omega beta + pi a/(2 Omega)
-    # contact on the left: C sin Psi and C cos Psi with the signs of w = +1 and of a motion to the right
+    # impact on the left wall: signs of C sin Psi and C cos Psi for w = +1 and motion to the right
     return np.array([[psi, speed], [psi + np.pi, -speed]])
 
 
 def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
-    """Nodes (Psi, w) at the turns of pure sliding `tt` about the middle, shape (2, 2).
+    """Return nodes (Psi, w) at the turns of pure sliding `tt` about the middle, shape (2, 2).
 
     From w' = 0 at both turns, half a period apart: C cos Psi = -s H, and the turning points are w = -+ sqrt(C^2 - H^2).
 
@@ -181,9 +182,9 @@ def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
 
 
 def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
-    """Nodes (Psi, w) of the symmetric stick-slip motion `ss` (events s, u, s, u) about the middle, shape (4, 2).
+    """Return nodes (Psi, w) of the symmetric stick-slip motion `ss` (events s, u, s, u) about the middle, shape (4, 2).
 
-    A slip starts where C Omega^2 sin Psi = -m a; the slide after it ends at the next zero of w'.
+    A slip starts at C Omega^2 sin Psi = -m a; the slide after it ends at the next zero of w'.
 
     Parameters
     ----------
@@ -212,7 +213,7 @@ def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     def rate(psi: float) -> float:
         return mode * C * omega * (np.cos(psi) - np.cos(slip)) - a * (psi - slip) / omega
 
-    # w' rises until the shaking falls below friction (at slip + pi - 2 asin(..)), then falls through 0
+    # w' rises until the shaking is weaker than friction (at slip + pi - 2 asin(..)), then falls through 0
     left, right = (
         2.0 * np.pi * (mode > 0) + (np.pi if mode < 0 else 0.0) - float(np.arcsin(a / (C * omega**2))),
         slip + np.pi,

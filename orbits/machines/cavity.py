@@ -1,7 +1,7 @@
-"""The cavity: a mass with dry friction between two unlike walls, on a slope, shaken harmonically.
+"""The cavity: a mass with dry friction between two different walls, on a slope, shaken harmonically.
 
-Its sides have numbers of their own, which one name may stand for at once: `restitution` for `restitution_left` and `restitution_right`. Where they are
-given together they vary together.
+Each side has its own restitution and friction. One name can stand for both sides: `restitution` for `restitution_left` and
+`restitution_right`. If a machine is given by the common name, both sides vary together.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from orbits.machines.parameters import (
 from orbits.words import Word
 
 PAIRS = {name: (f"{name}_left", f"{name}_right") for name in ("restitution", "friction")}
-"""Names that stand for both sides at once."""
+"""Common names of both sides, and the names of each side."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cavity(Model):
-    """A reduced absorber with two unlike walls and gravity along the cavity.
+    """A reduced absorber with two different walls and gravity along the cavity.
 
     ``w'' = -C Omega^2 sin(Psi) - (1 + eps) g sin(slope) - s (1 + eps) mu_s g cos(slope),   -distance_right <= w <= distance_left``,
 
     with s the sign of w', ``mu_+`` = `friction_left` (sliding to the left wall), ``mu_-`` = `friction_right`, and w'+ = -r w'- with the
-    restitution of the wall that is hit. Level and with equal sides this is `orbits.Absorber`, level and with unlike distances it is
-    symmetric about the middle between the walls. Steep, without friction and with the left wall out of reach it is a ball that
+    restitution of the wall that is hit. Level and with equal sides it is `orbits.Absorber`; level and with different distances it is
+    symmetric about the middle between the walls. Steep, without friction and with a left wall out of reach it is a ball that
     bounces on a sinusoidal table.
 
     Parameters
@@ -55,25 +55,25 @@ class Cavity(Model):
     gravity : float
         g / (b omega_0^2) >= 0.
     slope : float
-        Angle of the cavity in radians, from -pi/2 to pi/2; positive pulls towards the right wall, w = -1.
+        Angle of the cavity in radians, from -pi/2 to pi/2; if positive, gravity pulls towards the right wall, w = -1.
     distance_left, distance_right : float
-        Of the walls from w = 0, above 0, in units of b.
+        Distances of the walls from w = 0, above 0, in units of b.
     mass_ratio : float
         eps = m / M >= 0.
     frequency : float
         Omega > 0, excitation frequency over omega_0.
     contact_time : float, optional
-        Duration of an impact in 1/omega_0, which moves nothing: with it orbits have the measure ``peak_force``.
+        Duration of an impact in 1/omega_0, only for the measure ``peak_force``; the motion does not depend on it.
 
     Raises
     ------
     ParameterError
-        For values that make no sense; the sentence names field, value and way out.
+        For impossible values; the message names field, value and remedy.
 
     Notes
     -----
     The absorber's absolute motion is q2'' = g sin(slope) + s mu g cos(slope), and w = v - (1 + eps) q2 with v = C sin(Omega tau)
-    about its place of rest.
+    about its position of rest.
     """
 
     restitution: float | None = None
@@ -139,7 +139,7 @@ class Cavity(Model):
     # ------------------------------------------------------------------ what varies
     @property
     def _amount_of(self) -> list[str]:
-        """The amount that each number is: the name that both sides share where they are given together, else its own."""
+        """Name of the amount behind each number: the common name of both sides if they are given together, else its own name."""
         shared = {
             side: both for both, sides in PAIRS.items() if getattr(self, both) is not None for side in sides
         }
@@ -163,7 +163,7 @@ class Cavity(Model):
 
     # ------------------------------------------------------------------ starts
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        """Nodes of the bounce off one wall on a slope without friction, `R` (or `L` for a negative slope), in closed form.
+        """Yield nodes of the bounce off one wall on a slope without friction, `R` (or `L` for a negative slope), in closed form.
 
         Over k forcing periods, T = 2 pi k/Omega: B+ = -b T/2 and C Omega cos Psi = -(1 - r)/(1 + r) b T/2.
         """
@@ -176,5 +176,8 @@ class Cavity(Model):
         cosine = -(1.0 - r) / (1.0 + r) * b * half
         if (b > 0.0) != (word.events == ("R",)) or abs(cosine) > speed:
             return
-        for sign in (-np.sign(b), np.sign(b)):  # where the table brakes the more the later it is hit: stable
+        for sign in (
+            -np.sign(b),
+            np.sign(b),
+        ):  # first the stable one: the later the table is hit, the more it brakes
             yield np.array([[sign * np.arccos(cosine / speed) % (2.0 * np.pi), -b * half]])

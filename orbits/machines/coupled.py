@@ -1,4 +1,4 @@
-"""The coupled machine: a mass with dry friction in a cavity that rides on a driven linear oscillator."""
+"""The coupled machine: a mass with dry friction in a cavity on a driven linear oscillator."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Coupled(Model):
     ``q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps q2'',    q2'' = mu g cos(slope) S + g sin(slope),    e = eps G sin(Omega tau)``,
 
     with S the sign of w' = q1' - q2' while sliding, ``|S| <= 1`` while stuck, ``|w| <= 1``, and w'+ = -r w'- at the walls with
-    v = q1 + eps q2 and v' continuous. q1 and q2 are counted from where both rest with the absorber in the middle. Lengths in units of the
+    v = q1 + eps q2 and v' continuous. q1 and q2 count from the position of rest with the absorber in the middle. Lengths are in units of the
     cavity's half-width b, time tau = omega_0 t.
 
     Parameters
@@ -57,21 +57,22 @@ class Coupled(Model):
     frequency : float
         Omega > 0, excitation frequency over omega_0.
     excitation : {"exact", "truncated"} or float
-        Whether the base also acts through the damper (eps lambda e', exact) or that term is dropped, as in the literature; a
-        number from 0 to 1 leaves that part of it.
+        Whether the base also acts through the damper (eps lambda e', exact) or this term is dropped, as in the literature; a
+        number from 0 to 1 keeps this share of the term.
     slope : float
-        Angle of the cavity, and of the oscillator's rail, in radians, from -pi/2 to pi/2; positive pulls the absorber towards the right wall, w = -1.
+        Angle of the cavity and of the oscillator's rail, in radians, from -pi/2 to pi/2; if positive, gravity pulls the absorber towards the
+        right wall, w = -1.
     contact_time : float, optional
-        Duration of an impact in 1/omega_0, which moves nothing: with it orbits have the measure ``peak_force``.
+        Duration of an impact in 1/omega_0, only for the measure ``peak_force``; the motion does not depend on it.
 
     Raises
     ------
     ParameterError
-        For values that make no sense; the sentence names field, value and way out.
+        For impossible values; the message names field, value and remedy.
 
     Notes
     -----
-    Source: Youssef, Karoui, Leine, the model section; the terms that are dropped there are kept. For data in SI units
+    Source: Youssef, Karoui, Leine, the model section, with the terms that are dropped there. For data in SI units
     see `orbits.design.scales`.
     """
 
@@ -91,7 +92,7 @@ class Coupled(Model):
     default_measure: ClassVar[str] = "max_abs_q1"
     default_parameter = "frequency"
     driven_by: ClassVar[str] = "forcing"
-    patience = 2  # a light absorber's oscillator settles over thousands of periods
+    patience = 2  # an oscillator with a light absorber settles over thousands of periods
     closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt")
     younger: ClassVar[tuple[str, ...]] = ("slope",)
     table: ClassVar[tuple[Parameter, ...]] = (
@@ -117,7 +118,7 @@ class Coupled(Model):
         _underdamped(self.damping, self.mass_ratio)
 
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """The parameter vector, shape (9,); see `Model.vector`.
+        """Return the parameter vector, shape (9,); see `Model.vector`.
 
         Raises
         ------
@@ -138,7 +139,7 @@ class Coupled(Model):
 
     # ------------------------------------------------------------------ orbits
     def symmetric_orbit(self, fast: bool = True, **parameters: float):
-        """The symmetric orbit `LR` with two impacts per period, in closed form.
+        """Return the symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters
         ----------
@@ -150,7 +151,7 @@ class Coupled(Model):
         Raises
         ------
         ParameterError
-            If there is none with these parameters.
+            If there is no such orbit with these parameters.
         """
         params = self.vector(parameters)
         found = coupled_orbits.symmetric_nodes(params)
@@ -162,7 +163,7 @@ class Coupled(Model):
         return self._closed("LR", found[0 if fast else -1], params)
 
     def sliding_orbit(self, **parameters: float):
-        """The symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
+        """Return the symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
 
         Raises
         ------
@@ -179,19 +180,19 @@ class Coupled(Model):
         return self._closed("tt", nodes, params)
 
     def orbit_near(self, equilibrium: Equilibrium, **parameters: float):
-        """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
+        """Return the exact orbit, `LR` or `tt`, near a steady state of the slow flow.
 
         Parameters
         ----------
         equilibrium : orbits.theory.multiple_scales.Equilibrium
-            Its detuning sets the frequency, 1 + mass_ratio * detuning.
+            Its detuning gives the frequency, 1 + mass_ratio * detuning.
         **parameters
             Parameters that replace the machine's own.
 
         Raises
         ------
         ParameterError
-            On a slope, which the slow flow does not know.
+            On a slope: the slow flow is only for level cavities.
         """
         slope = float(parameters.get("slope", self.slope))
         if slope:
@@ -214,7 +215,7 @@ class Coupled(Model):
         return Orbit(self, reading, 1, nodes, params)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        """Nodes of the words in closed form: `LR`, `RL`, `tt`."""
+        """Yield the nodes of the words `LR`, `RL` and `tt` in closed form."""
         if periods != 1:
             return
         events = "".join(word.events)
@@ -227,16 +228,16 @@ class Coupled(Model):
                 yield nodes
 
     def stuck_response(self, **parameters: float) -> coupled_orbits.StuckResponse:
-        """The linear response with the absorber stuck, and whether friction holds it."""
+        """Return the linear response with the absorber stuck, and whether friction holds it."""
         return coupled_orbits.stuck_response(self.vector(parameters))
 
     def stuck_frequencies(self, **parameters: float) -> np.ndarray:
-        """Frequencies at which the stuck response begins or ceases to slip, ascending."""
+        """Return the frequencies at which the stuck response begins or ceases to slip, ascending."""
         return coupled_orbits.stuck_frequencies(self.vector(parameters))
 
 
 def _begun_later(nodes: np.ndarray) -> np.ndarray:
-    """Two nodes counted from the second one."""
+    """Return two nodes, beginning with the second one."""
     return np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
 
 

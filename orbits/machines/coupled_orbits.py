@@ -5,12 +5,12 @@ q1 = h + o + z (harmonic X sin Psi + Y cos Psi, offset o = -eps mu g s, damped o
 
     z(T) + z(0) = -2 o,      z'(T) + z'(0) = -eps (2 beta + s mu g T),      q2(0) = -(beta T + s mu g T^2/2)/2,
 
-beta = q2' just after the event: the jump of q1' at an impact balances that of eps q2'. Given beta these are linear, and so
+beta = q2' just after the event: the jump of q1' at an impact balances that of eps q2'. For given beta these equations are linear, as
 are the two conditions at the event (contact and restitution, or w' = 0), whose unknowns are h and h' at the event. Since
 h^2 + (h'/Omega)^2 = X^2 + Y^2, a quadratic equation in beta remains for `LR`: at most two orbits at each frequency, and
-a fold where its discriminant vanishes. For `tt` beta = -s mu g T/2, and nothing is left to solve.
+a fold at the zero of its discriminant. For `tt` beta = -s mu g T/2 is known.
 
-While stuck the oscillator has the mass 1 + eps, and slips where (1 + eps) Omega^2 |q1| reaches (1 + eps) mu g.
+While the absorber sticks the oscillator has the mass 1 + eps; it slips if (1 + eps) Omega^2 |q1| reaches (1 + eps) mu g.
 
 Source: own derivation from the equations of motion; parameters as in `orbits.machines.reference.law`.
 """
@@ -33,9 +33,10 @@ if TYPE_CHECKING:
 
 
 class _Half:
-    """The oscillator over half a forcing period T of sliding in direction s, z(0) = start + beta ahead as a pair (z, z'); `transition` takes it to z(T).
+    """The oscillator over half a forcing period T of sliding in direction s.
 
-    `pull`: mu g. `square`: X^2 + Y^2. `offset`: o.
+    The free oscillation at its start is z(0) = start + beta ahead, as a pair (z, z'); `transition` maps it to z(T). `pull` is mu g, `square` is
+    X^2 + Y^2, `offset` is o.
     """
 
     def __init__(self, params: np.ndarray, s: int) -> None:
@@ -52,20 +53,20 @@ class _Half:
         self.square = self.X**2 + self.Y**2
 
     def phase(self, h0: float, h1: float) -> float:
-        """Psi from X sin Psi + Y cos Psi = h0 and X cos Psi - Y sin Psi = h1."""
+        """Return Psi from X sin Psi + Y cos Psi = h0 and X cos Psi - Y sin Psi = h1."""
         return math.atan2(self.X * h0 - self.Y * h1, self.X * h1 + self.Y * h0) % (2.0 * math.pi)
 
 
 def _law(params: np.ndarray) -> Law:
-    """The numbers of the equations; the response is infinite, or no number, at a resonance without damping."""
+    """Return the numbers of the equations; the response is infinite, or NaN, at a resonance without damping."""
     with np.errstate(all="ignore"):
         return coupled([*params])
 
 
 def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
-    """Nodes (Psi, B+, v, v') at L and R of the symmetric orbits `LR`, each of shape (2, 4): the faster absorber first.
+    """Return nodes (Psi, B+, v, v') at L and R of the symmetric orbits `LR`, each of shape (2, 4): the faster absorber first.
 
-    Empty when there is none, as on a slope. Admissibility is not looked at.
+    Empty if there are none, as on a slope. Admissibility is not tested.
     """
     if params[8] != 0.0:
         return []
@@ -92,7 +93,7 @@ def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
 
 
 def nodes_from_equilibrium(params: np.ndarray, equilibrium: Equilibrium) -> np.ndarray:
-    """First approximation of the nodes of `LR` or `tt`, shape (2, 4), from a steady state of the slow flow.
+    """Return a first approximation of the nodes of `LR` or `tt`, shape (2, 4), from a steady state of the slow flow.
 
     With v = C sin(Psi + gamma) and B, h of the slow flow: at the left wall v = 1 - pi B/2, v' = Omega (R B + h) and
     B+ = B + h; at a turn towards the left wall v = w = -delta, v' = -Omega h. Exact to order eps.
@@ -115,12 +116,12 @@ def nodes_from_equilibrium(params: np.ndarray, equilibrium: Equilibrium) -> np.n
 
 
 def _mirrored(first: Sequence[float]) -> np.ndarray:
-    """A node and its mirror image half a period later."""
+    """Return a node and its mirror image half a period later."""
     return np.array([first, [first[0] + math.pi, *(-value for value in first[1:])]])
 
 
 def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray | None:
-    """Nodes (Psi, w, v, v') at the turns of symmetric sliding `tt` about the middle, shape (2, 4); None if there is none.
+    """Return nodes (Psi, w, v, v') at the turns of symmetric sliding `tt` about the middle, shape (2, 4); None if there is none.
 
     Parameters
     ----------
@@ -157,7 +158,7 @@ class StuckResponse:
     shaking : float
         Largest |v''|.
     reserve : float
-        a - |b| - |v''|, b = (1 + eps) g sin(slope): positive when friction holds the absorber.
+        a - |b| - |v''|, b = (1 + eps) g sin(slope): positive if friction holds the absorber.
     """
 
     amplitude: float
@@ -172,7 +173,7 @@ class StuckResponse:
 
 
 def stuck_response(params: np.ndarray) -> StuckResponse:
-    """The stuck response, which is the only linear one."""
+    """Return the response with the absorber stuck."""
     law = _law(params)
     X, Y, held = law.stuck.X, law.stuck.Y, law.friction_left - abs(law.lean)
     amplitude = math.hypot(X, Y)
@@ -181,7 +182,7 @@ def stuck_response(params: np.ndarray) -> StuckResponse:
 
 
 def stuck_frequencies(params: np.ndarray) -> np.ndarray:
-    """Frequencies at which the stuck response begins or ceases to slip, ascending.
+    """Return the frequencies at which the stuck response begins or ceases to slip, ascending.
 
     With x = Omega^2, c = eps lambda and f = g (mu cos(slope) - |sin(slope)|): Omega^2 |q1| = f is the cubic
     (eps G)^2 x^2 (1 + chi^2 c^2 x) = f^2 ((1 - (1 + eps) x)^2 + c^2 x).

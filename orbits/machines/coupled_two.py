@@ -2,9 +2,10 @@
 
     M q'' = k (e - q) + c (e' - q') + m1 (q - x1)-friction + m2 (q - x2)-friction,    x_i'' = g mu_i sign(q' - x_i'),    e = E sin(2 pi f t),
 
-with |q - x_i| <= clearance_i and Newton's restitution at the walls, which take and give momentum: of an impact of absorber i, q' changes by m_i/M of what x_i' does.
-Letters: L1, R1, L2, R2 for impacts on the left and right walls; t1, s1, u1 and t2, s2, u2 for turns, sticks and slips. A light second absorber leaves the machine
-`coupled` with mass_ratio = m1/M. Its flow is integrated as that of any declared machine (`orbits.machines.page`): two absorbers stick and slide in nine ways.
+with |q - x_i| <= clearance_i and Newton's restitution at the walls. Impacts conserve momentum: at an impact of absorber i, the jump of q' is
+-m_i/M times that of x_i'. Letters: L1, R1, L2, R2 for impacts on the left and right walls; t1, s1, u1 and t2, s2, u2 for turns, sticks and
+slips. With a light second absorber the machine becomes `coupled` with mass_ratio = m1/M. Its flow is integrated like that of any declared
+machine (`orbits.machines.page`): two absorbers stick and slide in nine combinations.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ PARAMETERS = {  # name: (usual value, unit, meaning)
     "gravity": (9.81, "m/s^2", ""),
     "contact_time": (0.5, "ms", "duration of an impact, which only its peak force depends on"),
 }
-# millimetres and metres a second: unknowns of like size, as continuation wants them
+# millimetres and metres per second give unknowns of similar size, as continuation needs them
 STATES = {"q": "mm", "x1": "mm", "x2": "mm", "q_rate": "m/s", "x1_rate": "m/s", "x2_rate": "m/s"}
 
 
@@ -54,7 +55,7 @@ def _motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plai
 
 
 def _energy(state: States, phase: Plain, p: Named) -> Plain:
-    """Kinetic energies, and that of the spring."""
+    """Return the kinetic energies and that of the spring."""
     stiffness = p.oscillator_mass * (TURN * p.natural_frequency) ** 2
     stretch = state.q - p.base_amplitude * sin(phase)
     own = p.oscillator_mass * state.q_rate**2 + stiffness * stretch**2
@@ -62,7 +63,7 @@ def _energy(state: States, phase: Plain, p: Named) -> Plain:
 
 
 def _wall(absorber: int, side: int) -> Wall:
-    """The left (side = 1) or the right wall of an absorber's cavity."""
+    """Return the left (side = 1) or the right wall of an absorber's cavity."""
 
     def gap(state: States, phase: Plain, p: Named) -> Plain:
         return getattr(p, f"clearance_{absorber}") - side * (state.q - getattr(state, f"x{absorber}"))

@@ -1,7 +1,7 @@
-"""Rubin's reduction: the structure's own modes up to a frequency, and what forces at its contacts bend beside them, statically.
+"""Matrices of a structure, and Rubin's reduction: own modes up to a frequency, and static deflections under forces at the contacts.
 
-The degrees of freedom with forces and contacts stay coordinates. Source: S. Rubin, Improved component-mode representation for structural dynamic analysis,
-AIAA Journal 13 (1975) 995.
+Degrees of freedom with forces and contacts remain coordinates. Source: S. Rubin, Improved component-mode representation for structural
+dynamic analysis, AIAA Journal 13 (1975) 995.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from scipy.linalg import eigh
 from orbits.machines.parameters import ParameterError
 from orbits.settings import FORMULAS
 
-WHOLE = 8  # degrees of freedom up to which nothing is reduced
-GRID = 200  # frequencies at which receptances are compared, beside the natural ones
+WHOLE = 8  # largest number of degrees of freedom without reduction
+GRID = 200  # frequencies at which receptances are compared, besides the natural frequencies
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,11 @@ class Reduced:
     kept : tuple of int
         Degrees of freedom, from 0, that are the first coordinates; modes follow.
     size : int
-        Degrees of freedom of the whole.
+        Degrees of freedom of the whole structure.
     error : float
         Largest relative difference of the receptances (displacements per force, at the kept ones) up to `highest`; 0 if nothing is reduced.
     highest : float
-        Frequency, radians a unit of time.
+        Frequency, radians per unit of time.
     """
 
     mass: np.ndarray
@@ -47,7 +47,7 @@ class Reduced:
 
     @property
     def sentence(self) -> str:
-        """What was done, and how good it is."""
+        """A sentence on the reduction and its accuracy."""
         if len(self.mass) == self.size:
             return f"all {self.size} degrees of freedom are kept"
         modes = len(self.mass) - len(self.kept)
@@ -65,15 +65,15 @@ def reduced(
     highest: float,
     accuracy: float,
 ) -> Reduced:
-    """As few modes as the accuracy needs.
+    """Reduce a structure to as few modes as the accuracy permits.
 
     Parameters
     ----------
     mass, damping, stiffness : float array (n, n)
     kept : sequence of int
-        Degrees of freedom, from 0, that must stay.
+        Degrees of freedom, from 0, that must remain.
     highest, accuracy : float
-        Up to which frequency receptances are compared, and how much they may differ.
+        Highest frequency at which receptances are compared, and their largest relative difference.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def reduced(
     squares, modes = eigh(stiffness, mass)
     shift = (
         highest**2 if squares[0] <= FORMULAS.zero * squares[-1] else 0.0
-    )  # a structure that floats has no static answer
+    )  # a free structure has no static deflection
     bent = np.linalg.solve(stiffness + shift * mass, np.eye(size)[:, kept])
     own = np.sqrt(np.maximum(squares, 0.0))
     steady = np.linspace(0.0, highest, GRID + 1)[1:]
@@ -109,7 +109,7 @@ def reduced(
 
 
 def _basis(mass: np.ndarray, modes: np.ndarray, bent: np.ndarray, kept: np.ndarray) -> np.ndarray:
-    """Directions (n, k): the first move the kept degrees of freedom by 1 each, the others leave them where they are."""
+    """Return directions (n, k): each of the first moves one kept degree of freedom by 1, the others move none of them."""
     rest = bent - modes @ (modes.T @ (mass @ bent))
     span = np.hstack([modes, rest / np.linalg.norm(rest, axis=0)])
     rows = span[kept]
@@ -121,26 +121,26 @@ def _basis(mass: np.ndarray, modes: np.ndarray, bent: np.ndarray, kept: np.ndarr
 
 
 def _receptance(matrices: Sequence[np.ndarray], omega: float, at: np.ndarray) -> np.ndarray:
-    """Displacements of these coordinates for unit forces on them."""
+    """Return displacements of these coordinates under unit forces on them."""
     m, c, k = matrices
     return np.linalg.solve(k + 1j * omega * c - omega**2 * m, np.eye(len(m))[:, at])[at]
 
 
 Given = str | np.ndarray | Sequence[Sequence[float]]
-MOST = 3000  # degrees of freedom: the reduction works with full matrices
+MOST = 3000  # largest number of degrees of freedom: the reduction uses dense matrices
 
 
 def matrix(name: str, given: Given, folder: Path | None = None) -> np.ndarray:
-    """A square matrix, shape (n, n).
+    """Return a square matrix, shape (n, n).
 
     Parameters
     ----------
     name : str
-        "mass", "damping" or "stiffness": for refusals, and of the variable in a MATLAB file that holds several.
+        "mass", "damping" or "stiffness": for messages, and as the name of the variable in a MATLAB file.
     given : nested list, array, or str
-        ``"mass.csv"``, ``"mass.txt"`` (numbers apart by commas, semicolons or blanks) or ``"model.mat:M"``.
+        ``"mass.csv"``, ``"mass.txt"`` (numbers separated by commas, semicolons or blanks) or ``"model.mat:M"``.
     folder : Path, optional
-        Where files lie.
+        Folder of the files.
 
     Raises
     ------

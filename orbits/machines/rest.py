@@ -1,6 +1,6 @@
-"""The motion without events: while friction holds, the absorber rides with the cavity.
+"""The motion without events: friction holds, and the absorber moves with the cavity.
 
-Its equations are linear, K u = f with few unknowns, and its only border is the slip, where the shaking first beats friction.
+Its equations are linear, K u = f with few unknowns. Its only border is the slip, at which the shaking first exceeds friction.
 """
 
 from __future__ import annotations
@@ -11,18 +11,21 @@ from orbits.machines.reference.law import DRIVEN, LAWS, Law
 
 
 class Rest:
-    """The absorber at rest in a shaken cavity, whose one unknown is its position, kept at w = 0; on an oscillator a linear response
-    q1 = X sin Psi + Y cos Psi with the mass 1 + eps, about the place where both rest. Parameter vectors have shape (P,)."""
+    """The absorber at rest in its cavity. Parameter vectors have shape (P,).
+
+    In a shaken cavity the only unknown is its position, kept at w = 0. On an oscillator the unknowns are X and Y of the linear response
+    q1 = X sin Psi + Y cos Psi with the mass 1 + eps, about the position of rest.
+    """
 
     def __init__(self, name: str) -> None:
         self._law, self.unknowns = LAWS[name], 2 if name in DRIVEN else 1
 
     def law(self, params: np.ndarray) -> Law:
-        """The numbers of the equations of motion."""
+        """Return the numbers of the equations of motion."""
         return self._law([*np.asarray(params, dtype=float)])
 
     def equations(self, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Matrix K (N, N) and right-hand side f (N,)."""
+        """Return matrix K (N, N) and right-hand side f (N,)."""
         law = self.law(params)
         if law.prescribed:
             return np.eye(1), np.zeros(1)
@@ -30,22 +33,22 @@ class Rest:
         return np.array([[stiffness, -drag], [drag, stiffness]]), law.force * np.array([1.0, law.base])
 
     def reserve(self, params: np.ndarray, u: np.ndarray) -> float:
-        """Friction acceleration left before the absorber slips, of the two directions the nearer to slipping."""
+        """Return the friction acceleration left before the absorber slips, in the direction nearer to slipping."""
         return min(self.reserves(params, u))
 
     def reserves(self, params: np.ndarray, u: np.ndarray | None = None) -> tuple[float, float]:
-        """The same of both directions: gravity along the cavity helps one and hinders the other."""
+        """Return the reserve in both directions; gravity along the cavity helps one direction and hinders the other."""
         law = self.law(params)
         size = law.amplitude if law.prescribed else np.hypot(*(self.solved(params) if u is None else u))
         shaking = float(size) * float(law.omega) ** 2
         return float(law.pull_left) - shaking, float(-law.pull_right) - shaking
 
     def solved(self, params: np.ndarray) -> np.ndarray:
-        """The unknowns."""
+        """Return the unknowns."""
         return np.linalg.solve(*self.equations(params))
 
     def multipliers(self, params: np.ndarray) -> np.ndarray:
-        """Multipliers over one forcing period, complex, shape (m,) with m the same for all parameters."""
+        """Return the multipliers over one forcing period, complex, shape (m,) with m the same for all parameters."""
         law = self.law(params)
         if law.prescribed:
             return np.zeros(0, complex)
@@ -54,7 +57,7 @@ class Rest:
     def cavity_motion(
         self, params: np.ndarray, u: np.ndarray, phase: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """v and v' at some phases."""
+        """Return v and v' at given phases."""
         law = self.law(params)
         if law.prescribed:
             return law.amplitude * np.sin(phase), law.amplitude * law.omega * np.cos(phase)
@@ -62,7 +65,7 @@ class Rest:
         return X * np.sin(phase) + Y * np.cos(phase), law.omega * (X * np.cos(phase) - Y * np.sin(phase))
 
     def measure(self, name: str, params: np.ndarray, u: np.ndarray) -> float:
-        """A measure that has a meaning without events; nan for any other."""
+        """Return a measure that is defined without events; NaN for any other."""
         law = self.law(params)
         if law.prescribed:
             return float(law.amplitude) ** 2 if name == "C2" else np.nan
@@ -82,7 +85,7 @@ class Rest:
 
 
 def share_of_the_base(law: Law, periods: int, overlap: float) -> float:
-    """What the base's motion adds to the loss in the damper: lambda times the integral of (q1' - e')^2 - q1'^2, per mass of the absorber.
+    """Return the additional loss in the damper due to the base's motion: lambda times the integral of (q1' - e')^2 - q1'^2, per mass of the absorber.
 
     By parts the integral of q1' e' is Omega^2 times that of q1 e; `overlap` is the integral of q1 sin Psi over the phase.
     """

@@ -1,9 +1,12 @@
 """A linear structure with harmonic forces and local contacts, as a declared machine.
 
-    M x'' + C x' + K x = sum of forces A cos(n phase + shift) + contact forces,
+    M x'' + C x' + K x = sum of forces A cos(n phase + shift) + contact forces.
 
-with walls (rigid, Newton's restitution; elastic, a spring and perhaps a damper beyond a gap that press and never pull), dry friction, and absorbers: a mass
-with dry friction in a cavity that rides on a degree of freedom.
+Contacts are:
+
+- walls: rigid, with Newton's restitution; or elastic, a spring and perhaps a damper beyond a gap that push and never pull;
+- dry friction;
+- absorbers: a mass with dry friction in a cavity fixed to a degree of freedom.
 """
 
 from __future__ import annotations
@@ -48,19 +51,19 @@ FIELDS: dict[str, dict[str, float | None]] = {  # of each kind of element; None:
 is the largest friction force."""
 MATRICES = ("mass", "damping", "stiffness")
 GIVEN = ("forces", "walls", "frictions", "absorbers", "highest", "accuracy")
-"""What else a structure is made of."""
-FIXED = ("at", "to", "side", "harmonic", "shift")  # no parameters
-MEANT = 5.0  # times the frequency of the forces: up to there the reduction is held to its accuracy
+"""Further arguments of a structure."""
+FIXED = ("at", "to", "side", "harmonic", "shift")  # fields that are no parameters of the machine
+MEANT = 5.0  # highest frequency at which the reduction must be accurate, over the frequency of the forces
 
 
 class Structure(Machine):
-    """A structure; made by `structure`."""
+    """A structure, made by `structure`."""
 
     reduction: Reduced
     elements: dict[str, list[dict[str, float]]]
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
-        """All that makes it again, ready for JSON: its reduced matrices, its elements and its parameters."""
+        """Return everything that `structure_again` needs, ready for JSON: reduced matrices, elements and parameters."""
         small = self.reduction
         matrices = {name: getattr(small, name).tolist() for name in MATRICES}
         made = vars(small) | matrices | {"kept": list(small.kept), "elements": self.elements}
@@ -85,7 +88,7 @@ def structure(
     accuracy: float = 0.01,
     folder: Path | None = None,
 ) -> Structure:
-    """A structure from its matrices.
+    """Return a structure from its matrices.
 
     Parameters
     ----------
@@ -93,25 +96,27 @@ def structure(
         (n, n); or a file, see `orbits.machines.reduction.matrix`.
     forces, walls, frictions, absorbers : sequences of mapping
         Their fields are in `FIELDS`: ``{"at": 2, "amplitude": 0.1}``, ``{"at": 1, "gap": 1.0, "stiffness": 100.0}`` (with ``loss`` a
-        damper beside the spring) or ``{"at": 1, "to": 2, "gap": 1.0, "restitution": 0.8}``, ``{"at": 1, "limit": 0.2}``, ``{"at": 2, "mass": 0.05, "clearance": 0.5,
-        "restitution": 0.6, "friction": 0.01}``. A wall stands where x_at - x_to reaches the gap, with ``side = -1`` where it reaches minus the gap.
+        damper parallel to the spring) or ``{"at": 1, "to": 2, "gap": 1.0, "restitution": 0.8}``, ``{"at": 1, "limit": 0.2}``,
+        ``{"at": 2, "mass": 0.05, "clearance": 0.5, "restitution": 0.6, "friction": 0.01}``. A wall is reached at x_at - x_to = gap, with
+        ``side = -1`` at minus the gap.
     frequency : float
-        Of the forces, radians a unit of time.
+        Frequency of the forces, radians per unit of time.
     highest, accuracy : float
-        More than 8 degrees of freedom are reduced: receptances up to `highest` (five times the frequency by default) are kept to this relative accuracy.
+        With more than 8 degrees of freedom the structure is reduced: receptances up to `highest` (five times the frequency by default) are
+        kept to this relative accuracy.
     folder : Path, optional
-        Where files lie.
+        Folder of the files.
 
     Returns
     -------
     Structure
-        States ``x1, v1, ...`` of the degrees of freedom that stay, ``m1, n1, ...`` of modes, ``y1, w1, ...`` of absorbers; parameters ``frequency``,
-        ``force_amplitude``, ``wall_gap``, ... (``wall1_gap``, ``wall2_gap`` of several).
+        States ``x1, v1, ...`` of the degrees of freedom that remain, ``m1, n1, ...`` of modes, ``y1, w1, ...`` of absorbers; parameters
+        ``frequency``, ``force_amplitude``, ``wall_gap``, ... (``wall1_gap``, ``wall2_gap`` if there are several).
 
     Raises
     ------
     ParameterError
-        The sentence names the field, the value and a way out.
+        The message names the field, the value and the remedy.
     """
     matrices = [
         matrix(name, given, folder)
@@ -145,7 +150,7 @@ def structure(
 
 
 def structure_again(settings: Mapping[str, Any]) -> Structure:
-    """The structure with these settings."""
+    """Return the structure with these settings."""
     kept = settings["structure"]
     m, c, k = (np.array(kept[name]) for name in MATRICES)
     small = Reduced(m, c, k, tuple(kept["kept"]), kept["size"], kept["error"], kept["highest"])
@@ -154,7 +159,7 @@ def structure_again(settings: Mapping[str, Any]) -> Structure:
 
 
 def _element(kind: str, place: int, given: object, size: int) -> dict[str, float]:
-    """An element with all its fields."""
+    """Return an element with all its fields, checked."""
     where, known = f"{kind}s[{place}]", FIELDS[kind]
     if not isinstance(given, Mapping):
         raise ParameterError(f"{where} = {given!r}: expected fields such as {dict.fromkeys(known, 1.0)}")
@@ -188,9 +193,9 @@ def _element(kind: str, place: int, given: object, size: int) -> dict[str, float
 
 
 class _Space:
-    """Coordinates of a reduced structure and of its absorbers, positions before speeds; and what forces along a direction do to them.
+    """Coordinates of a reduced structure and of its absorbers, positions before speeds, and the effect of forces along a direction.
 
-    A direction, shape (coordinates,), has 1 where a force pushes and -1 where it pushes back.
+    A direction, shape (coordinates,), has 1 at the coordinate on which a force acts and -1 at that of the reaction.
     """
 
     def __init__(self, small: Reduced, elements: Mapping[str, Sequence[Element]]) -> None:
@@ -204,11 +209,11 @@ class _Space:
         self.states = (*(x for x, _ in names), *self.speeds)
 
     def name(self, kind: str, k: int, field: str) -> str:
-        """The parameter that a field of an element is."""
+        """Return the name of the parameter that a field of an element becomes."""
         return f"{kind}{k + 1 if len(self.elements[kind]) > 1 else ''}_{field}"
 
     def direction(self, element: Element, absorber: int | None = None) -> np.ndarray:
-        """x_at - x_to; or x_at - y of an absorber."""
+        """Return the direction x_at - x_to; of an absorber x_at - y."""
         found = np.zeros(len(self.speeds))
         found[self.place[int(element["at"])]] = element.get("side", 1.0)
         if element.get("to"):
@@ -218,15 +223,15 @@ class _Space:
         return found
 
     def stretch(self, state: States, direction: np.ndarray) -> Plain:
-        """How far the ends of a direction are apart."""
+        """Return the distance between the ends of a direction."""
         return _sum(direction, state[: len(self.speeds)])
 
     def stretching(self, state: States, direction: np.ndarray) -> Plain:
-        """Its rate."""
+        """Return the rate of this distance."""
         return _sum(direction, state[len(self.speeds) :])
 
     def faster(self, i: int, direction: np.ndarray, force: Plain, p: Named) -> Plain:
-        """What a force along a direction adds to the rate of speed i."""
+        """Return the contribution of a force along a direction to the rate of speed i."""
         if i >= self.count:
             part, mass = float(direction[i]), getattr(p, self.name("absorber", i - self.count, "mass"))
             return part * force / mass if part else 0.0
@@ -234,7 +239,7 @@ class _Space:
         return part * force if part else 0.0
 
     def wall(self, letter: str, direction: np.ndarray, gap: str, restitution: str) -> Wall:
-        """A rigid wall that is met where the ends of a direction are so far apart; it pushes against the direction."""
+        """Return a rigid wall that is reached when the distance along a direction equals the gap; it pushes against the direction."""
 
         def push(i: int) -> Callable[..., Plain]:
             return lambda state, phase, p: self.faster(i, -direction, 1.0, p)
@@ -247,7 +252,7 @@ class _Space:
         )
 
     def friction(self, name: str, direction: np.ndarray, limit: str, number: int) -> DryFriction:
-        """Dry friction between the ends of a direction."""
+        """Return dry friction between the ends of a direction."""
         letters = tuple(f"{letter}{number}" for letter in "tsu")
         return DryFriction(
             name, lambda state, phase, p: self.stretching(state, direction), limit, letters=letters
@@ -255,11 +260,11 @@ class _Space:
 
     # ------------------------------------------------------------------ elastic walls
     def beyond(self, k: int, wall: Element, state: States, p: Named) -> Plain:
-        """How far the structure has gone beyond the gap of a wall."""
+        """Return the penetration of an elastic wall (negative before contact)."""
         return self.stretch(state, self.direction(wall)) - getattr(p, self.name("wall", k, "gap"))
 
     def press(self, k: int, wall: Element, state: States, p: Named) -> Plain:
-        """The force with which an elastic wall presses."""
+        """Return the force of an elastic wall."""
         force = getattr(p, self.name("wall", k, "stiffness")) * self.beyond(k, wall, state, p)
         if wall["loss"]:
             speed = self.stretching(state, self.direction(wall))
@@ -268,7 +273,7 @@ class _Space:
 
     # ------------------------------------------------------------------ the machine's formulas
     def contacts(self) -> list[Contact]:
-        """Walls, frictions, and of each absorber two walls and a floor."""
+        """Return walls, frictions, and two walls and a floor of each absorber."""
         found: list[Contact] = []
         for k, wall in enumerate(self.elements["wall"]):
             if "restitution" in wall:
@@ -298,7 +303,7 @@ class _Space:
         return found
 
     def motion(self, state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
-        """Rates of the states."""
+        """Return the rates of the states."""
         speeds = state[len(self.speeds) :]
         pushes: list[tuple[np.ndarray, Plain]] = []
         for k, force in enumerate(self.elements["force"]):
@@ -306,7 +311,7 @@ class _Space:
             pushes.append((self.direction(force), getattr(p, self.name("force", k, "amplitude")) * swing))
         for k, wall in enumerate(self.elements["wall"]):
             if "stiffness" in wall:
-                pressed = 0.5 * (1 + getattr(contact, f"stop{k + 1}"))  # 1 where it presses, else 0
+                pressed = 0.5 * (1 + getattr(contact, f"stop{k + 1}"))  # 1 if it presses, else 0
                 if wall["loss"]:
                     pressed = pressed * (0.5 * (1 + getattr(contact, f"holds{k + 1}")))
                 pushes.append((-self.direction(wall), self.press(k, wall, state, p) * pressed))
@@ -324,7 +329,7 @@ class _Space:
         return (*speeds, *rates)
 
     def energy(self, state: States, phase: Plain, p: Named) -> Plain:
-        """Of the structure, its absorbers and its elastic walls: half the stiffness times the square of how deep they are pressed in."""
+        """Return the energy of the structure, its absorbers and its elastic walls (half the stiffness times the squared penetration)."""
         speeds, total = state[len(self.speeds) :], 0.0
         for part, values in ((self.small.stiffness, state), (self.small.mass, speeds)):
             for i in range(self.count):
