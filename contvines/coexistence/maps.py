@@ -178,16 +178,18 @@ class MapPopulation(StartsInBox):
         x, n, functions = guess[0].copy(), len(guess), self.problem.functions
         for _ in range(NEWTON):
             self.work += n
-            points, image, matrix = [], x, np.eye(len(x))
+            image, matrix = x, np.eye(len(x))
             for _ in range(n):
-                points.append(image)
                 matrix = functions.jacobian(image, p) @ matrix
                 image = functions.value(image, p)
             if not np.all(np.isfinite(image)):
                 return None
             step = np.linalg.lstsq(matrix - np.eye(len(x)), x - image, rcond=None)[0]
             if np.abs(step).max() <= MAPS.returned * self.size:
-                return np.array(points)
+                cycle = [x + step]
+                for _ in range(n - 1):
+                    cycle.append(functions.value(cycle[-1], p))
+                return np.array(cycle)
             x = x + step
             if np.abs(x - guess[0]).max() > reach * self.size:
                 return None
