@@ -1,5 +1,5 @@
 """Check certificates of proofs independently: only the certificate and mpmath's intervals are used, no code of the prover.
-It is a chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, parameter) are m + s q + [-r, r], one
+Each is a chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, parameter) are m + s q + [-r, r], one
 solution for every |q| <= h; r = 0 for an unknown that q alone fixes, h = 0 for an orbit, which lies in the tiles next to it."""
 import re
 from typing import Any
@@ -47,7 +47,7 @@ def machine(c, parameter):
         p |= {f"limit{s}": weight * cos(tilt) * friction, f"bounce{s}": r, f"wall{s}": p.get("distance" + side, jet(1)) * s}
     return p | {"whole": p["e"] + 1}
 def motion(p, letter, mode, x, phase, rates=5):
-    """q1 = X sin + Y cos + rest + (y cos bt + z sin bt) exp(-dt), w = q1 - q2 and derivatives; q2 has constant acceleration."""
+    """q1 = X sin + Y cos + rest + (y cos bt + z sin bt) exp(-dt), w = q1 - q2, v = q1 + e q2, with derivatives; q2'' is constant."""
     e, om, whole, wall, s, c, zero = p["e"], p["frequency"], p["whole"], WALL.get(letter), sin(x[0]), cos(x[0]), jet(0)
     t, pull, mass = (phase - x[0]) / om, (p[f"limit{mode}"] * mode - p["bias"]) * abs(mode) / whole, jet(1) if mode else whole
     X, Y, y, z, C, S, d, b = p.get("amplitude"), *[zero] * 7

@@ -1,4 +1,4 @@
-"""Pieces of branches: an interval of the parameter covered by tiles, with one verdict on all orbits of it."""
+"""Proofs of pieces of branches: tiles cover an interval of the parameter, with the same verdict on all its orbits."""
 
 from __future__ import annotations
 
@@ -27,38 +27,41 @@ if TYPE_CHECKING:
     from flint import arb
 
 
-BITS = 192
-FIRST = 1 / 16  # first tile's share of the piece
-ROOM = 0.8  # by which a tile is widened where its stability is judged
-GRADE = 0.35  # near a special point a tile's width over the distance
+BITS = 192  # precision
+FIRST = 1 / 16  # width of the first tile, relative to the piece
+ROOM = 0.8  # enlargement of a tile's radii when its verdicts are computed, so that another arithmetic confirms them
+GRADE = 0.35  # largest width of a tile, relative to its distance from a special point
 
 
 @dataclass(frozen=True)
 class Piece:
-    """What is proved of a piece of a branch.
+    """Proof for a piece of a branch.
 
     Attributes
     ----------
     motif : Motif
     parameters : dict
-        All but those that vary.
+        All parameters except those that vary.
     varying : Varying
+        The parameter that varies.
     asked : (float, float)
-        The interval that was to be covered.
+        The requested interval of the parameter.
     boxes : tuple of dict
-        For the certificate: orbits and tiles in turn, in ascending order.
+        Orbits and tiles of the certificate, alternating, in ascending order.
     covered : (str, str) or None
-        The interval that is covered by orbits with one verdict, as exact decimals.
+        The interval that is covered with one verdict, as exact decimals; None if nothing is covered.
     count : int
-        Of tiles.
+        Number of tiles.
     radius : float or None
         The largest radius of a tile at one value of the parameter.
     ends : (str or None, str or None)
-        The kinds of the special points up to which it goes.
+        Kinds of the special points at which the piece begins and ends; None at an ordinary point.
     real, stable : bool or None
-        Of all orbits of the piece; None where the verdict is not the same, or not proved, everywhere.
+        Verdict on all orbits of the piece; None if it is not proved.
     obstacles : tuple of Obstacle
-        Why the cover ends before the interval does.
+        Why the covered interval is shorter than the requested one.
+    bits : int
+        Precision of the ball arithmetic.
     """
 
     motif: Motif
@@ -83,11 +86,11 @@ class Piece:
 
     @property
     def parameter(self) -> str:
-        """Name of the parameter that varies."""
+        """Name of the varying parameter."""
         return self.varying.name
 
     def to_dict(self) -> dict[str, Any]:
-        """The piece as JSON."""
+        """Return the piece as a dict for JSON."""
         return {
             "kind": "piece",
             "existence": self.existence,
@@ -105,7 +108,7 @@ class Piece:
         }
 
     def certificate(self) -> dict[str, Any]:
-        """All that a checker needs; JSON.
+        """Return the certificate of the piece for `orbits.proofs.checker`, as a dict for JSON.
 
         Raises
         ------
@@ -145,20 +148,21 @@ def prove_piece(
     high: float,
     ends: tuple[Proof | None, Proof | None] = (None, None),
 ) -> Piece:
-    """Cover an interval of the parameter by tiles on which all orbits are real (or virtual) and stable (or unstable) alike.
+    """Cover an interval of the parameter with tiles whose orbits all have the same verdicts (real or virtual, stable or unstable).
 
     Parameters
     ----------
     motif : Motif
-    guess : function of the parameter's value
-        Computed nodes (l, n) near the branch there.
+    guess : callable
+        Maps a value of the parameter to computed nodes (l, n) near the branch.
     parameters : dict
-        Of the machine; those that vary are left out of account.
+        Parameters of the machine; values of those that vary are ignored.
     varying : Varying
+        The parameter that varies.
     low, high : float
-        low < high.
+        The interval, low < high.
     ends : (Proof or None, Proof or None)
-        Special points at which the piece begins and ends: then it goes up to the points themselves.
+        Proofs of the special points at which the piece begins and ends; with them the piece includes these points.
     """
     given = {name: decimal(value) for name, value in parameters.items() if name not in varying.numbers}
     check_symmetry(motif, given, varying)
@@ -184,7 +188,7 @@ def prove_piece(
 
 
 def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> list[Entry]:
-    """The chain of a special point, its last orbit the one on the piece's side."""
+    """Return the chain of a special point, ordered so that its last orbit lies on the side of the piece."""
     one, tile, other = end.chain
     if one["parameter"] != other["parameter"]:
         ascending = float(one["parameter"][0]) < inside
@@ -199,7 +203,7 @@ def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> l
 
 
 class _Cover:
-    """Tiles laid one after another from the left to the right end, and the orbits that join them."""
+    """Construction of the cover: tiles one after another from the left to the right end, and orbits that lie in two neighbouring tiles."""
 
     def __init__(self, family: Family) -> None:
         self.family = family
@@ -217,7 +221,7 @@ class _Cover:
         first: list[Entry] | None,
         last: list[Entry] | None,
     ) -> Obstacle | None:
-        """Cover from `low`, or from the special point `first`, to `high`, or to `last`; what was in the way."""
+        """Cover from `low` (or the special point `first`) to `high` (or the special point `last`); return None, or the obstacle at which the cover ends."""
         begin, end = low, high
         try:
             if first:
@@ -265,14 +269,15 @@ class _Cover:
     def _next(
         self, at: str, box: Box, width: float, least: float, goal: str, last: list[Entry] | None
     ) -> tuple[str, Box] | Obstacle:
-        """Lay a tile of this width from the orbit `box` at `at` on, and prove the orbit near its right end.
+        """Prove one tile of this width that begins at the orbit `box` with parameter `at`, and the orbit near its right end.
 
-        The first tile may leave a verdict open only where it is narrower than `least`.
+        Return the parameter and the box of that orbit, or an obstacle. An undecided verdict of the first tile is accepted only if the
+        tile is narrower than `least`.
         """
         family = self.family
         where = f"{family.varying.name} = {float(at):.6g}"
         smaller = Obstacle(Step.PIECE, Remedy.SMALLER, detail=where)
-        # a little to the left of `at`, so that the orbit lies within
+        # the tile begins slightly to the left of `at`, so that the orbit lies inside
         center = repr(float(at) + 0.49 * width)
         half = f"{width / 2:.6g}"
         before = np.array([[float(mid) for mid, _ in node] for node in box.nodes])
@@ -307,7 +312,10 @@ class _Cover:
         return reached, following
 
     def _judged(self, tile: Tile) -> tuple[tuple[bool | None, bool | None], Tile]:
-        """Whether all orbits of a tile are real, and stable, with room to spare: another arithmetic must come to the same."""
+        """Return the verdicts (real, stable) on all orbits of a tile, and the tile with a basis for the checker.
+
+        Radii are enlarged for the stability, so that the checker's arithmetic comes to the same verdict.
+        """
         values, balls = tile.values(), tile.balls()
         roomy = self.family.system(_wider(values))
         steady, basis = stable_in_basis(roomy, [[_wider(v) for v in node] for node in balls])
@@ -326,13 +334,13 @@ def _wider(value: arb) -> arb:
 
 @dataclass(frozen=True)
 class Pieces:
-    """A branch, stretch by stretch between its special points.
+    """Proof for a branch: one piece for each stretch between neighbouring special points.
 
     Attributes
     ----------
     pieces : tuple of Piece
     places : tuple of (int, int)
-        The points of the branch between which each of them lies.
+        For each piece the indices of the first and last point of its stretch.
     """
 
     pieces: tuple[Piece, ...]
@@ -346,12 +354,12 @@ class Pieces:
 
     @property
     def real(self) -> bool | None:
-        """The verdict on all stretches, None where they differ."""
+        """The verdict on all stretches; None if they differ."""
         return _common([piece.real for piece in self.pieces])
 
     @property
     def stable(self) -> bool | None:
-        """The verdict on all stretches, None where they differ."""
+        """The verdict on all stretches; None if they differ."""
         return _common([piece.stable for piece in self.pieces])
 
     @property
@@ -361,11 +369,11 @@ class Pieces:
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """Those of all stretches."""
+        """Obstacles of all stretches."""
         return tuple(obstacle for piece in self.pieces for obstacle in piece.obstacles)
 
     def to_dict(self) -> dict[str, Any]:
-        """The pieces as JSON."""
+        """Return the pieces as a dict for JSON."""
         return {
             "kind": "branch",
             "existence": self.existence,
@@ -377,7 +385,7 @@ class Pieces:
         }
 
     def certificate(self) -> list[dict[str, Any]]:
-        """The certificates of the pieces of which something is proved."""
+        """Return the certificates of all pieces that are covered at least in part."""
         return [piece.certificate() for piece in self.pieces if piece.count]
 
     def __str__(self) -> str:

@@ -1,6 +1,6 @@
-"""What a proof has found, for people and for files; and certificates, which are all that `orbits.proofs.checker` needs.
+"""Results of proofs, as text and JSON, and certificates for `orbits.proofs.checker`.
 
-A certificate is a chain of boxes, orbit, tile, orbit ... tile, orbit; each unknown of a box is [middle, slope, radius], as decimal text.
+A certificate is a chain of boxes: orbit, tile, orbit ... tile, orbit. Each unknown of a box is [middle, slope, radius] as decimal text.
 """
 
 from __future__ import annotations
@@ -22,32 +22,32 @@ from orbits.proofs.wording import SAYS, said, spelling
 
 @dataclass(frozen=True)
 class Proof:
-    """What is proved of one orbit or one special point.
+    """Proof of one orbit or one special point.
 
     Attributes
     ----------
     kind : str
         "orbit", or the kind of the special point.
     motif : Motif
-        The word, and whether half of a symmetric orbit stands for the whole.
+        The word, and whether half of it is solved for.
     parameters : dict
-        Exact decimals, or (middle, radius); without the parameter that a special point solves for.
+        Name -> exact decimal, or (middle, radius); without the parameter that is an unknown at a special point.
     varying : Varying or None
-        At a special point the parameter that is enclosed.
+        At a special point the parameter that is an unknown.
     box : Box or None
-        Holds exactly one solution of the equations; None where existence was not proved.
+        Contains exactly one solution of the equations; None if existence was not proved.
     real : bool or None
-        All margins proved positive; one proved negative; neither.
+        True: all margins are proved positive; False: one is proved negative; None: neither.
     stable : bool or None
-        All multipliers proved inside the unit circle; one proved outside; neither. Of special points only borders have it.
+        True: all multipliers are proved inside the unit circle; False: one is proved outside; None: neither, or a special point.
     broken : (str, int) or None
-        The margin proved negative: name and event.
+        Name and event of the margin that is proved negative.
     obstacles : tuple of Obstacle
-        What could not be proved, and what would help.
+        Steps that failed, with remedies.
     chain : tuple of dict
-        For a special point's certificate: an orbit, a tile and an orbit about it (`orbits.proofs.tiles.crossing`).
+        Boxes of a special point's certificate: an orbit, a tile and an orbit around it (`orbits.proofs.tiles.crossing`).
     basis : tuple of sequences of str
-        For an orbit's certificate: rows of a basis that shows its stability plainly.
+        For an orbit's certificate: rows of a basis in which the checker can verify its stability.
     bits : int
         Precision of the ball arithmetic.
     """
@@ -67,22 +67,22 @@ class Proof:
 
     @property
     def existence(self) -> bool:
-        """Whether exactly one solution is proved to lie in the box."""
+        """Whether the box is proved to contain exactly one solution."""
         return self.box is not None
 
     @property
     def parameter(self) -> str | None:
-        """At a special point the name of the parameter that is enclosed."""
+        """At a special point the name of the parameter that is an unknown, else None."""
         return self.varying.name if self.varying else None
 
     @property
     def transversal(self) -> bool | None:
-        """At a special point: a regular zero of the defining system, which is what was proved, is transversal."""
+        """Whether a special point is proved to be transversal, which follows from a regular zero of its defining system; None for an orbit."""
         return None if self.parameter is None else self.existence
 
     @property
     def radius(self) -> float | None:
-        """The largest radius of a node's (and a special point's parameter's) ball."""
+        """The largest radius of the balls of the nodes (and of the parameter at a special point)."""
         if self.box is None:
             return None
         n = self.motif.node
@@ -92,11 +92,11 @@ class Proof:
 
     @property
     def value(self) -> list[str] | None:
-        """At a special point middle and radius of the parameter's ball."""
+        """Middle and radius of the parameter's ball at a special point, else None."""
         return self.box.extras[0] if self.box is not None and self.parameter is not None else None
 
     def nodes(self) -> list[list[list[str]]]:
-        """The nodes' balls over the whole word, in the order of an orbit's nodes."""
+        """Return the balls of all nodes of the whole word, in the order of an orbit's nodes."""
         if self.box is None or not self.motif.events:
             return []
         n = self.motif.node
@@ -116,7 +116,7 @@ class Proof:
         return nodes + image
 
     def to_dict(self) -> dict[str, Any]:
-        """The proof as JSON."""
+        """Return the proof as a dict for JSON."""
         result = {
             "kind": self.kind,
             "existence": self.existence,
@@ -138,7 +138,7 @@ class Proof:
         return result
 
     def certificate(self) -> dict[str, Any]:
-        """All that a checker needs: exact inputs, balls, claims, versions; JSON.
+        """Return the certificate (exact inputs, balls, claims, versions) for `orbits.proofs.checker`, as a dict for JSON.
 
         Raises
         ------
@@ -183,19 +183,19 @@ Entry = dict[str, Any]
 
 
 def plain(text: str) -> str:
-    """A decimal as certificates write it."""
+    """Return a decimal in the notation of certificates."""
     number = Decimal(text)
     return str(number).lower() if number else "0"
 
 
 def orbit_box(motif: Motif, box: Box, value: str = "1", basis: Sequence[Sequence[str]] = ()) -> Entry:
-    """A proved orbit, where the parameter (if one varies) has this value."""
+    """Return the box of a proved orbit; `value` is that of the varying parameter, if there is one."""
     nodes = [[[mid, "0", rad] for mid, rad in node[: motif.node]] for node in box.nodes]
     return box_entry(motif, nodes, [plain(value), "0", "0"], "0", basis)
 
 
 def resting_box(motif: Motif, value: str = "1", half: str = "0") -> Entry:
-    """The stuck absorber at a value of the parameter, or on an interval of it."""
+    """Return the box of the stuck absorber at a value of the parameter, or on the interval `value` +- `half`."""
     return box_entry(motif, [], [plain(value), "0" if half == "0" else "1", "0"], half, ())
 
 
@@ -206,6 +206,7 @@ def box_entry(
     half: str,
     basis: Sequence[Sequence[str]],
 ) -> Entry:
+    """Return one box of a certificate; the stuck absorber has zero nodes, and the default basis is the unit matrix."""
     n = motif.node
     unit = [["1" if i == j else "0" for j in range(n)] for i in range(n)]
     return {
@@ -219,7 +220,7 @@ def box_entry(
 
 
 def conditions(motif: Motif, vanishing: Vanishing) -> list[list[str | int]]:
-    """The inequality that a border is about, as the checker calls it."""
+    """Return the checker's key [name, event, side] of the inequality that changes at a border."""
     if vanishing.name in ("flight", "turn", "slip"):
         return [["flight", vanishing.event, motif.modes[vanishing.event]]]
     return [["wall" if vanishing.name == "wall" else "flight", vanishing.event, vanishing.side]]
@@ -234,7 +235,7 @@ def certificate(
     stable: bool | None,
     bits: int,
 ) -> Entry:
-    """The whole certificate as JSON."""
+    """Return the whole certificate as a dict for JSON."""
     return {
         "format": FORMAT,
         "parameters": numbers(motif.machine, parameters, varying),
@@ -251,7 +252,7 @@ def certificate(
 
 
 def numbers(machine: str, parameters: Mapping[str, Any], varying: Varying | None) -> dict[str, list[str]]:
-    """The machine's numbers: middle, radius, and the power of the parameter that multiplies them."""
+    """Return [middle, radius, exponent] of each of the machine's numbers; the parameter to this exponent multiplies the number."""
     moved = varying.numbers if varying else {}
     given: dict[str, list[str]] = {}
     for name in parameter_names(machine):

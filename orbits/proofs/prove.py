@@ -1,7 +1,7 @@
-"""Proofs of orbits and of special points, from their floating-point versions.
+"""Prove orbits and special points that were computed in floating point.
 
-The stuck absorber rides with the cavity, and all that has to be proved is that friction holds: the push against friction is a harmonic of
-the forcing about the bias, so it is largest in closed form.
+The stuck absorber moves with the cavity, so only its friction margin has to be proved. The push against friction is the bias plus a harmonic of
+the forcing, whose largest value is known in closed form.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ if TYPE_CHECKING:
     from orbits.proofs.jets import Number, Row
 
 
-MOST_BITS = 6144
-FLOATING = 64  # bits where floats will do
+MOST_BITS = 6144  # largest precision
+FLOATING = 64  # bits of computations that need no more than floating-point accuracy
 MULTIPLIERS = {"fold": 1, "symmetry-breaking": -1, "period-doubling": -1}
 
 
@@ -71,17 +71,20 @@ def prove_orbit(
     Parameters
     ----------
     machine : str
-    events, modes, periods : the word over the whole period.
+    events, modes : sequences of str and of int
+        The word over the whole period: letters, and the mode after each event.
+    periods : int
+        Forcing periods.
     nodes : float array (L, n)
         The computed nodes.
     parameters : dict
-        Floats (the shortest decimal of each is meant), exact decimals as text, or balls (middle, radius).
+        Name -> float (stands for its shortest decimal), exact decimal as text, or ball (middle, radius).
     half : bool
-        Solve on half the word: the orbit is symmetric.
+        The orbit is symmetric: solve for half the word.
     frictionless : bool
-        Flights may reverse freely.
+        The relative velocity may change sign in flights.
     bits : int, optional
-        Precision to begin with; it is raised where that helps.
+        Precision at the beginning; it is doubled while this helps.
 
     Returns
     -------
@@ -90,7 +93,7 @@ def prove_orbit(
     Raises
     ------
     ProofError
-        If the machine has no flights in closed form, or parameters make no sense.
+        If the machine has no flights in closed form, or a parameter is out of range.
     """
     motif = motif_of(machine, events, modes, periods, half, frictionless)
     given = {name: decimal(value) for name, value in parameters.items()}
@@ -136,7 +139,7 @@ def prove_special(
     margin: tuple[str, int] | None = None,
     bits: int | None = None,
 ) -> Proof:
-    """Prove a special point as a regular zero of its defining system, and whether the orbit there is real.
+    """Prove a special point as a regular zero of its defining system, and decide whether its orbit is real.
 
     Parameters
     ----------
@@ -144,13 +147,22 @@ def prove_special(
         "fold", "symmetry-breaking", "period-doubling", "neimark-sacker" or the kind of a border.
     motif : Motif
     nodes : float array (l, n)
-        Nodes of the part that the motif stands for.
+        Nodes of the motif's events.
     parameters : dict
-        All but those that vary.
-    varying, value : Varying, float
-        What is solved for, and where it was found.
+        Parameters of the machine; values of those that vary are ignored.
+    varying : Varying
+        The parameter that is an unknown.
+    value : float
+        Its computed value at the special point.
     margin : (str, int), optional
-        For a border the name of the margin that vanishes (`orbits.proofs.special.Vanishing`) and its event.
+        For a border: name (`orbits.proofs.special.Vanishing`) and event of the margin that vanishes.
+    bits : int, optional
+        Precision at the beginning; it is doubled while this helps.
+
+    Raises
+    ------
+    ProofError
+        If the part of the word does not suit the kind, or a parameter is out of range.
     """
     if kind in ("symmetry-breaking", "period-doubling") and motif.half is not (kind == "symmetry-breaking"):
         part = "half of the word of a symmetric orbit" if kind == "symmetry-breaking" else "the whole word"
@@ -206,7 +218,7 @@ def prove_special(
 
 
 def _slip(proof: Proof, family: Family, value: float, bits: int) -> Proof:
-    """Where the stuck absorber slips: the push just reaches friction."""
+    """Prove the point at which the stuck absorber begins to slip: the largest push equals the largest friction."""
     flights = family.motif.flights(family.numbers(ball(value)))
     one, other = (float(flights.resting(phase)[0].mid()) for phase in (ball(0), ball(float(np.pi / 2))))
     bias = float(ball(0) + flights.bias)
@@ -226,7 +238,7 @@ def _slip(proof: Proof, family: Family, value: float, bits: int) -> Proof:
 def _defining(
     kind: str, family: Family, x: list[list[arb]], value: float, vanishing: Vanishing | None
 ) -> tuple[System, list[list[arb]], list[arb], Normal | None]:
-    """The defining system, where to start, and the largest component of the eigenvector."""
+    """Return the defining system, start values of its unknowns (nodes, further ones), and the normalised component of the eigenvector."""
     motif, here = family.motif, family.numbers(ball(value))
     if vanishing is not None:
         extras = [ball(value)]
@@ -248,7 +260,7 @@ def _defining(
 def _refined(
     system: System, nodes: np.ndarray, extras: Sequence[arb], bits: int, start: list[list[arb]] | None = None
 ) -> Solution:
-    """Newton's method; the result must be the computed orbit, not one somewhere else."""
+    """Refine the computed orbit by Newton's method; raise an `Obstacle` if the result is a different orbit."""
     z = start or as_balls(nodes)
     z, e = refine(system, z, extras, bits)
     n = system.motif.node
@@ -267,7 +279,7 @@ def _refined(
 
 
 def _with_bits(attempt: Callable[[int], Proof], proof: Proof, bits: int, given: Mapping[str, Given]) -> Proof:
-    """Attempts with more and more bits until all is decided, or more bits change nothing."""
+    """Repeat `attempt` with doubled precision until all is decided or more bits do not help; return the best proof."""
     best, tries = replace(proof, bits=bits), 0
     wide = any(isinstance(value, tuple) for value in given.values())
     while True:
@@ -290,7 +302,7 @@ def _with_bits(attempt: Callable[[int], Proof], proof: Proof, bits: int, given: 
 
 
 class AtSlip(AtParameter):
-    """Where friction just holds the stuck absorber; unknowns the phase at which the push is largest, and the parameter."""
+    """Defining system of the limit of sticking; unknowns are the phase of the largest push on the stuck absorber, and the parameter."""
 
     def __init__(self, family: Family, side: int) -> None:
         super().__init__(family)
@@ -303,16 +315,16 @@ class AtSlip(AtParameter):
         self.borders = ((0, row),)
 
     def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
-        """The push is at its extremum."""
+        """Return the time derivative of the push, which vanishes at its extremum."""
         return [shared.resting(z[0])[1]]
 
     def closing(self, z: Row, extras: Row) -> list[Any]:
-        """There is no map to close."""
+        """Return the same phase: there is no map to close."""
         return list(z)
 
 
 def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) -> Proof:
-    """Whether the absorber can stay stuck; the motion itself exists in closed form, alone in its linear equations."""
+    """Prove that friction holds the absorber throughout, or not; existence and uniqueness follow from the linear equations of the stuck machine."""
     motif = Motif(machine, (), (), 1, False, False)
     given = {name: decimal(value) for name, value in parameters.items()}
     with precision(bits):
@@ -321,7 +333,7 @@ def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) 
         size = push_amplitude(flights)
         reserves = [flights.limit[side] - side * flights.bias - size for side in (1, -1)]
         real = True if all(r > 0 for r in reserves) else False if any(r < 0 for r in reserves) else None
-        # the oscillator's free motion decays by exp(-alpha T); the shaken cavity has none
+        # the free oscillation decays by exp(-alpha T); a shaken cavity has none
         stable = True if not flights.moving_cavity or p["damping"] > 0 else None
     proof = Proof("orbit", motif, given, box=Box([], []), real=real, stable=stable, bits=bits)
     if real is None:
@@ -330,7 +342,7 @@ def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) 
 
 
 def push_amplitude(flights: Flights) -> Number:
-    """Amplitude of the push on the stuck absorber, from two phases a quarter apart."""
+    """Amplitude of the push on the stuck absorber, from two phases a quarter period apart."""
     quarter = ball(1).atan() * 2
     one, other = (flights.resting(phase)[0] - flights.bias for phase in (ball(0), quarter))
     return sqrt(one * one + other * other)

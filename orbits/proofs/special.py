@@ -1,16 +1,19 @@
-"""Special points as zeros of their defining systems.
+"""Defining systems of special points.
 
-Fold, symmetry breaking, period doubling (multiplier mu = 1 or -1 of the period's map, or of half of it followed by the mirror):
+Fold, symmetry breaking, period doubling (multiplier mu = 1 or -1 of the map over the period, or over half of it followed by the mirror):
 
     G_i(x_i, x_{i+1}, p) = 0,    dG_i (phi_i, phi_{i+1}) = 0,    phi_l = mu phi_0,    one component of phi = 1;
 
-Neimark-Sacker: the same with a complex phi and mu = exp(i theta); borders: the margin that vanishes, with the phase at which it does
-as a further unknown where it is a minimum inside a flight.
+Neimark-Sacker point: the same with a complex phi and mu = exp(i theta). Border: the margin vanishes; if it vanishes as a minimum inside a flight,
+the phase of this minimum is a further unknown.
 
 **A regular zero is transversal.** If the whole derivative is regular at the zero (which the interval Newton operator proves), then
-for a fold the curve of orbits has a quadratic turning point there (Moore and Spence, *SIAM J. Numer. Anal.* 17, 1980); for mu = -1 and
-for the pair, orbits go on smoothly in p and d mu/dp, or d|mu|/dp, is not 0: the multiplier crosses the circle; for a border, the
-curve of orbits is smooth there and the margin changes sign along it. `docs/proofs.md` has the short arguments.
+
+- at a fold the curve of orbits has a quadratic turning point (Moore and Spence, *SIAM J. Numer. Anal.* 17, 1980);
+- for mu = -1 and for a pair, orbits depend smoothly on p, and d mu/dp, or d|mu|/dp, is not 0: the multiplier crosses the unit circle;
+- at a border the curve of orbits is smooth and the margin changes sign along it.
+
+`docs/proofs.md` has the short arguments.
 """
 
 from __future__ import annotations
@@ -38,42 +41,42 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Normal:
-    """The component of phi that is 1: of which node, and which of its unknowns."""
+    """The component of the eigenvector phi that is normalised to 1: node and component."""
 
     block: int
     component: int
 
 
 class Family(NamedTuple):
-    """All orbits of a motif along the parameter that varies; `p` are the numbers that do not move with it."""
+    """All orbits of a motif as a parameter varies; `p` has the machine's numbers that do not depend on it."""
 
     motif: Motif
     p: Mapping[str, arb]
     varying: Varying
 
     def numbers(self, value: arb) -> dict[str, arb]:
-        """All numbers of the machine at a value of the parameter."""
+        """Return all numbers of the machine at a value of the parameter."""
         return {**self.p, **self.varying.at(value)}
 
     def system(self, value: arb) -> System:
-        """The orbit at a value of the parameter."""
+        """Return the system of the orbit at a value of the parameter."""
         return System(self.motif, self.numbers(value))
 
 
 class AtParameter(System):
-    """Base of the systems in which the parameter that varies is an unknown, the first of the further ones."""
+    """Base class of systems in which the varying parameter is an unknown, the first of the further ones."""
 
     def __init__(self, family: Family) -> None:
         super().__init__(family.motif, family.p)
         self.varying, self.m = family.varying, 1
 
     def numbers(self, extras: Row) -> Mapping[str, Number]:
-        """The parameters, at the unknown one."""
+        """Return the machine's numbers at the unknown parameter."""
         return self.p | self.varying.at(extras[0])
 
 
 class AtMultiplier(AtParameter):
-    """Orbits with a multiplier `mu`, 1 or -1; unknowns (x_i, phi_i) per node."""
+    """Defining system of orbits with a multiplier `mu` = 1 or -1; unknowns (x_i, phi_i) per node."""
 
     directions = 1
 
@@ -86,12 +89,12 @@ class AtMultiplier(AtParameter):
         self.borders = ((normal.block, lambda z, e: z[place] - 1),)
 
     def prepare(self, extras: Row) -> Flights:
-        """The flights over numbers with one direction; what does not move along it is lifted."""
+        """Return the flights over jets in the eigenvector's direction; constants become jets without derivatives."""
         lifted = {name: Jet(value, {}) for name, value in self.p.items()}
         return self.motif.flights(lifted | self.varying.at(Jet(extras[0], {})))
 
     def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
-        """The map, then its derivative along each direction."""
+        """Return the residuals of the map, then their derivatives along each direction."""
         rows = self.motif.residual(i, shared, self._along(z), self._along(following))
         return [row.value for row in rows] + [partial(row, d) for d in range(self.directions) for row in rows]
 
@@ -100,7 +103,7 @@ class AtMultiplier(AtParameter):
         return [Jet(z[j], {d: z[n * (1 + d) + j] for d in range(self.directions)}) for j in range(n)]
 
     def closing(self, z: Row, extras: Row) -> list[Any]:
-        """x_l and phi_l = mu phi_0, seen through the mirror on half a word."""
+        """Return x_l and phi_l = mu phi_0, mirrored if half a word is solved for."""
         n = self.n
         return self.motif.closing(z[:n], self.numbers(extras)) + self._mirrored(
             [self.mu * value for value in z[n:]]
@@ -111,7 +114,7 @@ class AtMultiplier(AtParameter):
 
 
 class AtPair(AtMultiplier):
-    """Orbits with the multipliers exp(+-i theta); unknowns (x_i, Re phi_i, Im phi_i), further ones p and theta."""
+    """Defining system of orbits with multipliers exp(+-i theta); unknowns (x_i, Re phi_i, Im phi_i) per node, further unknowns p and theta."""
 
     directions = 2
 
@@ -122,7 +125,7 @@ class AtPair(AtMultiplier):
         self.borders = (*self.borders, (normal.block, lambda z, e: z[imaginary]))
 
     def closing(self, z: Row, extras: Row) -> list[Any]:
-        """x_l and phi_l = exp(i theta) phi_0."""
+        """Return x_l and phi_l = exp(i theta) phi_0."""
         n = self.n
         s, c = sin_cos(extras[1])
         a, b = z[n : 2 * n], z[2 * n :]
@@ -135,9 +138,9 @@ class AtPair(AtMultiplier):
 
 @dataclass(frozen=True)
 class Vanishing:
-    """The margin that vanishes at a border: its name, the event, and on which side.
+    """The margin that vanishes at a border: its name, event and side.
 
-    Names are those of `orbits.words` and "reversal" (a wall met by a flight that reverses freely).
+    Names are those of `orbits.words`, and "reversal" (a flight without friction touches a wall).
     """
 
     name: str
@@ -162,7 +165,7 @@ class Vanishing:
 
 
 class AtBorder(AtParameter):
-    """Orbits at a border; further unknowns p and, for a margin inside a flight, the phase at which it vanishes."""
+    """Defining system of orbits at a border; further unknowns are p and, for a margin inside a flight, the phase at which it vanishes."""
 
     def __init__(self, family: Family, vanishing: Vanishing) -> None:
         super().__init__(family)
@@ -181,7 +184,7 @@ class AtBorder(AtParameter):
         return row
 
     def _margin(self, x: Row, extras: Row) -> tuple[Number, Number | None]:
-        """The margin's equation, and that of the phase where it vanishes."""
+        """Return the margin, and the equation for the phase at which it vanishes (None for a margin at an event)."""
         motif, v = self.motif, self.vanishing
         flights = self.prepare(extras)
         flight = flights.launch(motif.events[v.event], motif.modes[v.event], x)
@@ -202,11 +205,11 @@ class AtBorder(AtParameter):
         return flights.room[v.side] - v.side * x[1], None
 
 
-SAMPLES = 400
+SAMPLES = 400  # phases of a flight at which a minimum of a margin is sought
 
 
 def chain(motif: Motif, p: Mapping[str, arb], nodes: Nodes) -> list[arb_mat]:
-    """The linearised maps at the middles, each a matrix of exact numbers."""
+    """Return the middles of the linearised maps."""
     try:
         return [factor.mid() for factor in linear_maps(System(motif, p), nodes)]
     except ZeroDivisionError:
@@ -214,12 +217,12 @@ def chain(motif: Motif, p: Mapping[str, arb], nodes: Nodes) -> list[arb_mat]:
 
 
 def eigenvector(factors: Sequence[arb_mat], mu: int) -> tuple[list[list[arb]], Normal]:
-    """phi at every node for the real multiplier nearest to mu, its largest component 1, and where that is."""
+    """Compute the eigenvector phi at every node for the real multiplier nearest to mu, with largest component 1; return it and this component's place."""
     arb, arb_mat = library().arb, library().arb_mat
     size = factors[0].nrows()
     product = middle_product(factors)
     shifted = product - diagonal(size, arb(mu))
-    # inverse iteration; the multiplier is known to about ten digits only
+    # inverse iteration with a small shift, because the multiplier equals mu to about ten digits only
     tilt = arb(2) ** (-60)
     shifted = shifted + diagonal(size, tilt)
     vector = arb_mat(size, 1, [arb(1) / (1 + i) for i in range(size)])
@@ -234,7 +237,7 @@ def eigenvector(factors: Sequence[arb_mat], mu: int) -> tuple[list[list[arb]], N
 
 
 def eigenpair(factors: Sequence[arb_mat]) -> tuple[list[list[arb]], Normal, float]:
-    """Re phi and Im phi at every node for the complex multiplier nearest to the unit circle, and its angle."""
+    """Compute Re phi and Im phi at every node for the complex multiplier nearest to the unit circle; return them, the normalised component and the angle."""
     numbers = np.array([[float(value) for value in row] for row in middle_product(factors).tolist()])
     values, vectors = np.linalg.eig(numbers)
     upper = [j for j, value in enumerate(values) if value.imag > 0.0]
@@ -250,7 +253,7 @@ def eigenpair(factors: Sequence[arb_mat]) -> tuple[list[list[arb]], Normal, floa
 
 
 def vanishing_margin(motif: Motif, p: Mapping[str, arb], nodes: Nodes, name: str, event: int) -> Vanishing:
-    """The margin of this name, with the side on which it vanishes (of the two walls, or of the push's two directions)."""
+    """Return the margin of this name with its side: the wall, or the direction of the push, for which it vanishes."""
     flights = motif.flights(p)
     flight = flights.launch(motif.events[event], motif.modes[event], nodes[event])
     side = 1
@@ -269,7 +272,7 @@ def vanishing_margin(motif: Motif, p: Mapping[str, arb], nodes: Nodes, name: str
 
 
 def touching_phase(motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: Vanishing) -> arb:
-    """The phase inside the flight at which the margin is smallest, roughly."""
+    """Return the approximate phase of the margin's minimum inside its flight."""
     least = _least(motif, p, nodes, vanishing)
     if least is None:
         raise Obstacle(
@@ -281,7 +284,7 @@ def touching_phase(motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: 
 def _least(
     motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: Vanishing
 ) -> tuple[float, arb] | None:
-    """The smallest value of a margin at a minimum inside its flight, and where."""
+    """Return value and phase of a margin's lowest minimum inside its flight; None without a minimum."""
     i = vanishing.event
     flights = motif.flights(p)
     flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
@@ -299,6 +302,7 @@ def _least(
 
 
 def _size(flight: Flight, phase: arb, mode: int, vanishing: Vanishing, machine: Flights) -> float:
+    """Return the margin at a phase of the flight."""
     m = flight(phase)
     if vanishing.name == "flight":
         return float((mode * m.w1).mid())
@@ -308,6 +312,7 @@ def _size(flight: Flight, phase: arb, mode: int, vanishing: Vanishing, machine: 
 
 
 def _carried(factors: Sequence[arb_mat], vector: arb_mat) -> list[list[arb]]:
+    """Map a vector at the first node to all nodes by the linearised maps."""
     result = []
     for factor in factors:
         result.append([vector[i, 0] for i in range(vector.nrows())])
@@ -316,7 +321,7 @@ def _carried(factors: Sequence[arb_mat], vector: arb_mat) -> list[list[arb]]:
 
 
 def _scaled(phi: list[list[arb]]) -> tuple[list[list[arb]], Normal]:
-    """The vectors with their largest component made 1."""
+    """Scale the vectors so that their largest component is 1; return them and its place."""
     places = [(i, j) for i in range(len(phi)) for j in range(len(phi[i]))]
     i, j = max(places, key=lambda place: float(abs(phi[place[0]][place[1]])))
     scale = phi[i][j]

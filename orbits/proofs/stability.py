@@ -1,12 +1,14 @@
-"""Stability from an enclosure A of the product of the linearised maps (of half the period for a symmetric orbit).
+"""Prove stability from an enclosure A of the product of the linearised maps (over half the period for a symmetric orbit).
 
-In any norm and for any power k, |A^k| < 1 proves that every multiplier lies inside the unit circle (in the Euclidean one: 1 - A'A is
-positive definite). A
-negative det(1 - A), det(1 + A) or product of all 1 - mu_i mu_j proves that one lies outside, for each is positive if all lie inside.
-No eigenvalue is computed, so neither multiple nor vanishing multipliers need care.
+- Stable: |A^k| < 1 for some norm and some power k proves that all multipliers lie inside the unit circle (for the Euclidean norm:
+  1 - A'A is positive definite).
+- Unstable: det(1 - A), det(1 + A) and the product of all 1 - mu_i mu_j are positive if all multipliers lie inside, so a negative one proves
+  that a multiplier lies outside.
 
-The matrices of a long word or of a wide parameter ball are multiplied in moving frames: each factor is seen from frames that the
-approximate product carries along, in which it is nearly diagonal, so that errors neither turn nor mix (the QR idea of Lohner).
+No eigenvalue is enclosed, so multiple or zero multipliers need no special treatment.
+
+For a long word or a wide parameter ball the matrices are multiplied in moving frames: each factor is transformed to frames that
+follow the approximate product. There it is nearly diagonal, so that errors of different components do not mix (Lohner's QR method).
 """
 
 from __future__ import annotations
@@ -29,14 +31,21 @@ if TYPE_CHECKING:
 
     from orbits.proofs.elimination import Nodes
 
-SQUARINGS = 26
-DIGITS = 60  # of exact eigenvectors
+SQUARINGS = 26  # most squarings of A
+DIGITS = 60  # digits of eigenvectors in certificates
 
 
 def stable(system: System, nodes: Nodes) -> tuple[bool | None, Obstacle | None]:
-    """True: all multipliers proved inside the unit circle; False: one proved outside; None, and why: neither.
+    """Decide the stability of all orbits with nodes in these balls.
 
-    The trivial multiplier of an impact-free motion, which may be shifted as a whole, is left out.
+    The trivial multiplier 1 of an impact-free motion (the absorber's position may be shifted) is left out.
+
+    Returns
+    -------
+    bool or None
+        True: all multipliers are proved inside the unit circle; False: one is proved outside; None: neither.
+    Obstacle or None
+        Why the stability is not decided.
     """
     motif = system.motif
     if motif.impact_free and not motif.half:
@@ -51,7 +60,7 @@ def stable(system: System, nodes: Nodes) -> tuple[bool | None, Obstacle | None]:
 
 
 def _verdict(product: arb_mat, squarings: int = SQUARINGS) -> bool | None:
-    """By the signs of det(1 - A), det(1 + A) and prod(1 - mu_i mu_j), and by norms of the powers."""
+    """Decide stability by the signs of det(1 - A), det(1 + A) and prod(1 - mu_i mu_j), and by norms of powers of A."""
     size = product.nrows()
     one = diagonal(size)
     if any(matrix.det() < 0 for matrix in (one - product, one + product)) or _pairs(product) < 0:
@@ -64,7 +73,7 @@ def _verdict(product: arb_mat, squarings: int = SQUARINGS) -> bool | None:
 
 
 def away_from_one(system: System, nodes: Nodes) -> bool:
-    """Whether the plain product of the maps, as a checker forms it, shows that no multiplier is 1 or -1, with room to spare."""
+    """Whether the plain product of the maps, which the checker uses, proves with a reserve that no multiplier is 1 or -1."""
     try:
         factors = factor_matrices(system, nodes)
     except ZeroDivisionError:
@@ -78,13 +87,13 @@ def away_from_one(system: System, nodes: Nodes) -> bool:
 
 
 def _definite(matrix: arb_mat) -> bool:
-    """Whether a symmetric matrix is positive definite: all leading minors are positive (Sylvester)."""
+    """Whether a symmetric matrix is proved positive definite: all leading minors are positive (Sylvester)."""
     rows = matrix.tolist()
     return all(library().arb_mat([row[:k] for row in rows[:k]]).det() > 0 for k in range(1, len(rows) + 1))
 
 
 def _pairs(product: arb_mat) -> arb:
-    """The product of 1 - mu_i mu_j over all pairs of multipliers, which is positive if all lie inside: det(1 - second compound)."""
+    """Product of 1 - mu_i mu_j over all pairs of multipliers, computed as det(1 - second compound matrix); positive if all multipliers lie inside."""
     size = product.nrows()
     pairs = [(i, j) for j in range(size) for i in range(j)]
     minors = [
@@ -98,23 +107,23 @@ def _pairs(product: arb_mat) -> arb:
 
 
 def factor_matrices(system: System, nodes: Nodes) -> list[arb_mat]:
-    """The linearised maps, reduced by the free shift of impact-free motions."""
+    """Return the linearised maps, for impact-free motions without the direction of the free shift."""
     factors = linear_maps(system, nodes)
     return [_without_shift(factor, system.p) for factor in factors] if system.motif.impact_free else factors
 
 
 def linear_maps(system: System, nodes: Nodes) -> list[arb_mat]:
-    """The linearised maps -D_i^{-1} A_i."""
+    """Return the linearised maps -D_i^{-1} A_i."""
     arb_mat = library().arb_mat
     blocks = system.linearise(nodes, [])
     return [-(arb_mat(D).solve(arb_mat(A))) for A, D in zip(blocks.A, blocks.D)]
 
 
 def _without_shift(factor: arb_mat, p: Mapping[str, arb]) -> arb_mat:
-    """The map of what is left when w (and v + eps w kept) may be shifted: w's row and column fall away."""
+    """Remove row and column of w, which may be shifted freely with v + eps w constant."""
     rows = factor.tolist()
     if len(rows) == 4:
-        # with v + eps w = (1 + eps) q1 in v's place the shift is along w alone
+        # with the unknown v + eps w = (1 + eps) q1 instead of v the shift changes w alone
         eps = p["mass_ratio"]
         rows[2] = [a + eps * b for a, b in zip(rows[2], rows[1])]
         for row in rows:
@@ -124,9 +133,9 @@ def _without_shift(factor: arb_mat, p: Mapping[str, arb]) -> arb_mat:
 
 
 def stable_in_basis(system: System, nodes: Nodes) -> tuple[bool | None, list[list[str]]]:
-    """The same for pieces of branches, with the basis (rows of decimals) in which a checker sees it from the plain product.
+    """Decide the stability for a tile; return the verdict and a basis (rows of decimals) in which the checker confirms it with the plain product.
 
-    The basis is empty where none helps.
+    The basis is empty if none was found.
     """
     if system.motif.impact_free:
         return stable(system, nodes)[0], basis_texts(system, nodes)
@@ -148,21 +157,21 @@ def stable_in_basis(system: System, nodes: Nodes) -> tuple[bool | None, list[lis
 
 
 def basis_texts(system: System, nodes: Nodes) -> list[list[str]]:
-    """That basis alone; of eigenvectors with many digits where multipliers hardly lie on one side of the circle."""
+    """Return a basis for the checker; it consists of eigenvectors with many digits if a multiplier is very near the unit circle."""
     try:
         product = middle_product(factor_matrices(system, nodes))
     except ZeroDivisionError:
         return []
     bases = _bases(product)
     basis = _eigenvectors(product) or _written(bases[0]) if bases else []
-    if basis and system.motif.impact_free:  # the direction of the shift, which takes w's place, is left open
+    if basis and system.motif.impact_free:  # insert a unit vector in place of w, for the shift
         basis = [[*row[:1], "0", *row[1:]] for row in basis]
         basis.insert(1, ["0", "1", *("0" for _ in basis[0][2:])])
     return basis
 
 
 def middle_product(factors: Sequence[arb_mat]) -> arb_mat:
-    """The product of the maps' middles, the first one rightmost."""
+    """Product of the middles of the maps; the first map acts first."""
     product = factors[0].mid()
     for factor in factors[1:]:
         product = (factor.mid() * product).mid()
@@ -170,7 +179,7 @@ def middle_product(factors: Sequence[arb_mat]) -> arb_mat:
 
 
 def _eigenvectors(product: arb_mat) -> list[list[str]]:
-    """Eigenvectors, real and imaginary parts of complex ones, at the precision in force; empty if none is near the circle."""
+    """Return eigenvectors (real and imaginary parts of complex ones) as columns, at the current precision; empty if no multiplier is near the circle."""
     flint = library()
     try:
         values, vectors = flint.acb_mat(product).eig(right=True)
@@ -196,7 +205,7 @@ def _written(basis: arb_mat) -> list[list[str]]:
 
 
 def _in_frames(factors: list[arb_mat]) -> arb_mat:
-    """A matrix similar to the product of the factors, the first of which acts first."""
+    """Return a matrix similar to the product of the factors (the first acts first), computed in moving frames."""
     plain = factors[0]
     for factor in factors[1:]:
         plain = factor * plain
@@ -216,16 +225,17 @@ def _in_frames(factors: list[arb_mat]) -> arb_mat:
 
 
 def _bases(product: arb_mat) -> list[arb_mat]:
-    """Exact bases that may show stability plainly, the better ones first.
+    """Return exact bases in which the stability may be proved, the best one first.
 
-    One of eigenvectors, real and imaginary parts of complex ones, where it is well-conditioned; of a stable matrix A one in which it
-    shortens all vectors, from X = 1 + (A/g)' X (A/g) with g between the spectral radius and 1 (Lyapunov, Stein).
+    1. Eigenvectors (real and imaginary parts of complex ones).
+    2. For a stable matrix A a basis in which A shortens all vectors, from X = 1 + (A/g)' X (A/g) with g between the spectral radius
+       and 1 (Stein's equation); it is the first one if the eigenvectors are ill-conditioned.
     """
     numbers = np.array([[float(value.mid()) for value in row] for row in product.tolist()])
     if not np.all(np.isfinite(numbers)) or np.max(np.abs(numbers), initial=0.0) > PROVING.largest:
         return []
     values, vectors = np.linalg.eig(numbers)
-    order = np.argsort(-np.abs(values), kind="stable")  # those outside the circle come first
+    order = np.argsort(-np.abs(values), kind="stable")  # eigenvalues outside the circle come first
     columns = []
     for value, vector in zip(values[order], vectors.T[order]):
         if value.imag == 0.0:
@@ -241,7 +251,7 @@ def _bases(product: arb_mat) -> list[arb_mat]:
         try:
             X = np.linalg.solve(stein, np.eye(size).ravel()).reshape(size, size)
             sizes, axes = np.linalg.eigh(0.5 * (X + X.T))  # principal axes, so that errors do not mix
-        except np.linalg.LinAlgError:  # the radius is 1 but for rounding
+        except np.linalg.LinAlgError:  # the radius is 1 to rounding
             sizes, axes = np.ones(size), np.eye(size)
         found.append(_exact(axes / np.sqrt(np.maximum(sizes, 1.0))))
         if not (eigen.shape == (size, size) and np.linalg.cond(eigen) < PROVING.mixed):
@@ -250,7 +260,7 @@ def _bases(product: arb_mat) -> list[arb_mat]:
 
 
 def _columns(carried: arb_mat) -> arb_mat | None:
-    """The carried frame's middle with columns of length one, made exact; None if it degenerates."""
+    """Return the middle of a frame with columns of length one, as an exact matrix; None if it is degenerate."""
     numbers = np.array([[float(value.mid()) for value in row] for row in carried.tolist()])
     lengths = np.linalg.norm(numbers, axis=0)
     if not np.all(lengths > 0.0) or not np.all(np.isfinite(lengths)):
@@ -259,6 +269,7 @@ def _columns(carried: arb_mat) -> arb_mat | None:
 
 
 def _exact(basis: np.ndarray) -> arb_mat | None:
+    """Return a basis as an exact matrix; None if it is not square, not finite or nearly singular."""
     if (
         basis.shape[0] != basis.shape[1]
         or not np.all(np.isfinite(basis))

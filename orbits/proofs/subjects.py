@@ -1,4 +1,4 @@
-"""What users hold (orbits, problems) as the proofs take it: words, nodes, decimals."""
+"""Proofs for the objects of users (orbits, problems): convert them to words, nodes and decimals, and prove them."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
-PLAIN = ("end", "user")  # kinds of special points where nothing happens
+PLAIN = ("end", "user")  # kinds of special points that are ordinary orbits
 
 
 class Motions(Protocol):
-    """What a proof asks of the problem of a word's cycles (`orbits.problem.OrbitProblem`)."""
+    """The attributes of `orbits.problem.OrbitProblem` that proofs use."""
 
     model: VaryingMachine
     word: Word
@@ -49,7 +49,7 @@ class Motions(Protocol):
 
 
 class Special(Protocol):
-    """What a proof asks of a special point."""
+    """The attributes of a special point that proofs use."""
 
     kind: str
     u: np.ndarray
@@ -64,9 +64,9 @@ def of_orbit(orbit: Cycle, bits: int | None = None, **parameters: Given) -> Proo
     ----------
     orbit : Orbit
     bits : int, optional
-        Precision to begin with.
+        Precision at the beginning.
     **parameters
-        Parameters in place of the orbit's floats: exact decimals as text, or balls (middle, radius).
+        Values that replace the orbit's floats: exact decimals as text, or balls (middle, radius).
 
     Raises
     ------
@@ -102,9 +102,16 @@ def of_point(
     kind : str
         Kind of the special point.
     u, p : float array (N,), float
-        Where it is.
+        Unknowns and parameter at the point.
     margin : int, optional
         At a border the index of the margin that vanishes.
+    bits : int, optional
+        Precision at the beginning.
+
+    Raises
+    ------
+    ProofError
+        If the machine has no flights in closed form, or the point cannot be proved in this form.
     """
     _refuse_pages(problem.model)
     orbit = problem.orbit(u, p)
@@ -146,14 +153,14 @@ def of_branch(
     ----------
     problem : OrbitProblem
     points, values : float arrays (n, N), (n,)
-        The branch in its order.
+        Unknowns and parameter values along the branch.
     marks : sequence of int
-        Places of special points: stretches end there.
+        Indices of special points, at which stretches end.
     within : (float, float), optional
-        Prove just this interval, on each stretch as far as that reaches.
+        Interval of the parameter to which every stretch is restricted.
     special : dict, optional
-        The special points (with `kind`, `u`, `value` and `margin_index`) at places among `marks`. Stretches go up to those that can
-        be proved with the branch's own word, and to plain ends; at others a hundredth is left out, where verdicts change.
+        Index -> special point (with `kind`, `u`, `value` and `margin_index`). A stretch includes a special point that can be proved with the
+        word of the branch, and a plain end; at other special points, where verdicts change, a hundredth of the stretch is left out.
 
     Raises
     ------
@@ -218,7 +225,7 @@ def of_branch(
 
 
 def _joinable(problem: Motions, motif: Motif, found: Special | None) -> Proof | None:
-    """A special point proved with the branch's own word, so that a stretch can go up to it; None where that cannot be."""
+    """Prove a special point with the word of the branch, so that a stretch can include it; None if this is not possible."""
     if found is None or found.kind in PLAIN or np.size(found.u) != problem.dimension:
         return None
     try:
@@ -232,7 +239,10 @@ def _joinable(problem: Motions, motif: Motif, found: Special | None) -> Proof | 
 def _critical(
     kind: str, word: Word, periods: int, nodes: np.ndarray, half: bool, symmetric: bool
 ) -> tuple[str, Word, int, np.ndarray, bool]:
-    """The description of the orbit in which a multiplier is critical alone: the root, and half of a symmetric one."""
+    """Return kind, word, periods, nodes and half of the description of an orbit in which only one multiplier is critical.
+
+    A repeated word is replaced by its root, and a symmetric orbit at a symmetry breaking by half of it.
+    """
     root, root_periods, root_nodes = root_orbit(word, periods, nodes)
     if not half and len(root) < len(word) and kind in ("period-doubling", "branch-point"):
         return "period-doubling", root, root_periods, root_nodes, False
@@ -242,6 +252,7 @@ def _critical(
 
 
 def _refuse_pages(model: VaryingMachine) -> None:
+    """Raise a `ProofError` for a machine without closed forms."""
     if not flow_of(model).closed_form:
         raise ProofError(
             f"the machine {model.name!r} offers no proofs, for flights of declared machines have no closed form; "
@@ -250,17 +261,18 @@ def _refuse_pages(model: VaryingMachine) -> None:
 
 
 def _margin(word: Word, index: int) -> str:
+    """Name of a margin in proofs, see `orbits.proofs.special.Vanishing`."""
     name = margin_name(word, index)
     return "reversal" if word.frictionless and index % len(word.alphabet.columns) == 0 else name
 
 
 def _numbers(orbit: Cycle) -> dict[str, float]:
-    """The machine's own numbers; of a machine in physical units those behind its quantities."""
+    """Return the machine's dimensionless numbers, also for a machine in physical units."""
     return orbit.model.named(orbit.params)
 
 
 def _mirrored(orbit: Cycle, given: Mapping[str, Given]) -> bool:
-    """Whether mirror images are motions of the machine with exactly these parameters."""
+    """Whether the mirror images of motions are motions of the machine with exactly these parameters."""
     word = orbit.word
     try:
         check_symmetry(
@@ -288,7 +300,7 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
 
 
 def _moved(problem: Motions) -> Varying:
-    """The machine's numbers that follow the problem's parameter."""
+    """Return the machine's numbers that depend on the problem's parameter."""
     names = parameter_names(problem.model.name)
     moved = {
         name: (repr(float(factor)), int(power) if float(power).is_integer() else float(power))

@@ -1,16 +1,16 @@
-"""Tiles: boxes about a branch in each of which the orbits form exactly one curve.
+"""Tiles: boxes around a branch, each of which contains exactly one curve of orbits.
 
-One of the unknowns (nodes x and parameter p together: U) is the coordinate of the curve, the parameter or, where the branch turns, an unknown
-of a node: it is c + q, |q| <= h. A tile is the set m + s q + [-r, r] with the branch's tangent s. With J any matrix of DF over the whole tile,
+One of the unknowns (nodes x and parameter p together) is the coordinate of the curve: the parameter or, at a fold, an unknown
+of a node. It is c + q with |q| <= h. A tile is the set m + s q + [-r, r] with the tangent s of the branch. If, for all matrices J of DF over the tile,
 
     J^{-1} F(m + s q)  inside (-r, r)    for all q
 
-proves one solution for each q (the interval Newton operator with the moving middle m + s q). F there is enclosed by its value
-at q = 0 and its derivative along s, which is small since s is tangent: r shrinks like h^2.
+then there is exactly one solution for each q (interval Newton operator with the moving middle m + s q). F(m + s q) is enclosed by its value
+at q = 0 and its derivative along s, which is small because s is the tangent; so r decreases like h^2.
 
-What happens at a special point is shown by two orbits on both sides of it and a tile that joins them: the defining system
-(`orbits.proofs.special`) encloses the point to thirty digits, and its certificate says the same so that less mathematics is needed to
-check it, one orbit where the multiplier or the margin has one sign, one where it has the other, both on one curve.
+The defining system of a special point (`orbits.proofs.special`) encloses it to thirty digits. Its certificate needs less mathematics:
+two orbits, one on each side of the point, and a tile that contains both. At one orbit the multiplier (or margin) lies on one side of its critical
+value, at the other on the other side, and both orbits lie on one curve.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ if TYPE_CHECKING:
     from orbits.proofs.jets import Number
 
 
-ROUNDS = 6
-DIGITS = 60  # of middles: tiles of long words may be narrower than 1e-30
-SLACK = 2.0  # so much smaller than the tile is the image, that another arithmetic finds it inside as well
-LEVEL = 0.25  # least radius over the largest
+ROUNDS = 6  # attempts to find suitable radii
+DIGITS = 60  # digits of middles; tiles of long words may be narrower than 1e-30
+SLACK = 2.0  # factor between a tile and its image under the Newton operator, so that the checker's arithmetic also finds the image inside
+LEVEL = 0.25  # smallest radius, relative to the largest
 Place = tuple[int, int]
 """The unknown that is a tile's coordinate: node and component."""
 
 
 class Along(AtParameter):
-    """A branch along one of its unknowns, the parameter where `place` is None; the coordinate's value is `at`."""
+    """System of the branch with one unknown as coordinate (the parameter if `place` is None), which has the value `at`."""
 
     def __init__(self, family: Family, place: Place | None, at: Number) -> None:
         super().__init__(family)
@@ -57,18 +57,18 @@ class Along(AtParameter):
 
 @dataclass(frozen=True)
 class Tile:
-    """One tile, all numbers as exact decimals.
+    """One tile; all numbers are exact decimals.
 
     Attributes
     ----------
     half : str
-        h.
+        Half-width h of the coordinate.
     nodes : list (l) of lists (n) of [middle, slope, radius]
     parameter : [middle, slope, radius]
     place : (int, int) or None
-        The coordinate among the nodes, None for the parameter; its radius is 0.
+        Node and component of the coordinate, or None for the parameter; its radius is 0.
     basis : list (n) of lists (n) of str
-        Columns in which the linearised map shows its stability plainly.
+        Basis (columns) in which the checker can verify stability.
     """
 
     half: str
@@ -78,16 +78,16 @@ class Tile:
     basis: list[list[str]]
 
     def values(self) -> arb:
-        """The ball of the parameter."""
+        """Return the ball of all values of the parameter in the tile."""
         return _hull(self.parameter, library().arb(0, self.half))
 
     def balls(self) -> list[list[arb]]:
-        """The whole tile as balls."""
+        """Return the nodes of the whole tile as balls."""
         q = library().arb(0, self.half)
         return [[_hull(triple, q) for triple in node] for node in self.nodes]
 
     def holds(self, value: str, box: Box) -> bool:
-        """Whether a proved orbit at a value of the parameter lies in the tile: then it is on the tile's curve."""
+        """Whether a proved orbit at a value of the parameter lies in the tile, and so on its curve."""
         arb = library().arb
         triples = [*(triple for node in self.nodes for triple in node), self.parameter]
         point = [*(arb(*pair) for node in box.nodes for pair in node), ball(value)]
@@ -101,7 +101,7 @@ class Tile:
         return bool(arb(0, self.half).contains(q)) and inside
 
     def end(self, value: float) -> list[list[float]]:
-        """Where the curve goes on, by its tangent: nodes near a value of the parameter, which is the coordinate."""
+        """Return approximate nodes at a value of the parameter along the tangent; the parameter must be the coordinate."""
         q = value - float(self.parameter[0])
         return [[float(m) + float(s) * q for m, s, _ in node] for node in self.nodes]
 
@@ -112,12 +112,13 @@ class Tile:
 
 
 def _hull(triple: Sequence[str], q: arb) -> arb:
+    """Return the ball m + s q + [-r, r] of one unknown."""
     m, s, r = triple
     return library().arb(m, r) + library().arb(s) * q
 
 
 def lay(along: Along, center: str, half: str, z: Nodes, value: arb) -> Tile | None:
-    """The tile about the refined nodes z and parameter where the coordinate is `center`, None if none is proved."""
+    """Prove a tile around a refined orbit (nodes z, parameter `value`) whose coordinate is `center`; None if this fails."""
     arb = library().arb
     span = arb(0, half)
     mids = [[texts(v.mid(), DIGITS)[0] for v in node] for node in z]
@@ -158,12 +159,12 @@ def lay(along: Along, center: str, half: str, z: Nodes, value: arb) -> Tile | No
 
 
 def tile_box(motif: Motif, tile: Tile) -> Entry:
-    """A tile as a certificate has it."""
+    """Return a tile as a box of a certificate."""
     return box_entry(motif, tile.nodes, tile.parameter, tile.half, tile.basis)
 
 
 def _levelled(radii: list[arb]) -> list[arb]:
-    """Radii of which none is much smaller than the others, so that a checker may bound their influence on each other crudely."""
+    """Enlarge small radii to `LEVEL` times the largest one, so that the checker's coarser bounds suffice."""
     largest = max(radii, key=float)
     return [r.max(LEVEL * largest) for r in radii]
 
@@ -173,12 +174,12 @@ def _flat(solution: Solution) -> list[arb]:
 
 
 def _tangent(along: Along) -> Solution:
-    """The right side whose solution is the tangent, with its sign changed: the coordinate grows at the rate 1."""
+    """Return the right side of the linear system whose solution is minus the tangent, with slope 1 of the coordinate."""
     return [[library().arb(0)] * along.k for _ in range(along.length)], [library().arb(-1)]
 
 
 def _solved(along: Along, Z: Nodes, E: Sequence[arb], F: Solution) -> Solution:
-    at, along.at = along.at, library().arb(0)  # a constant of the equations
+    at, along.at = along.at, library().arb(0)  # a constant, which does not change the derivative
     try:
         blocks = along.linearise(Z, E)
     finally:
@@ -190,7 +191,7 @@ def _solved(along: Along, Z: Nodes, E: Sequence[arb], F: Solution) -> Solution:
 def _residual(
     along: Along, m: Nodes, p: arb, s: Sequence[arb], center: arb, span: arb
 ) -> tuple[list[list[Any]], list[arb]]:
-    """Enclosures of F(m + s q) for all q in the span."""
+    """Return enclosures of F(m + s q) for all q in the span."""
     k = along.k
     along.at = center
     value, _ = along.residuals(m, [p])
@@ -205,7 +206,7 @@ def _residual(
 
 
 APART = ("2e-11", "2e-14", "2e-17", "2e-20", "2e-26", "2e-32", "2e-38")
-"""Of either orbit from the special point; nearer where the branch bends sharply or a long word's map is known too roughly in the tile."""
+"""Distances of the two orbits from the special point in the parameter, tried in turn: smaller ones serve sharp bends and long words."""
 TURN = (
     "1e-6",
     "1e-8",
@@ -214,8 +215,8 @@ TURN = (
     "1e-19",
     "1e-25",
     "1e-31",
-)  # the same in the unknown that goes on where the parameter turns
-WIDTH = 1.25  # of the tile
+)  # the same at a fold, in the unknown that is the coordinate
+WIDTH = 1.25  # half-width of the tile, relative to the distance of the orbits
 
 
 def crossing(
@@ -226,20 +227,26 @@ def crossing(
     turn: Normal | None = None,
     pair: bool = False,
 ) -> list[Entry]:
-    """The chain orbit, tile, orbit about a special point.
+    """Prove the chain (orbit, tile, orbit) around a special point.
 
     Parameters
     ----------
-    z, value : the point's nodes (with an eigenvector where there is one), and the parameter there.
+    family : Family
+    z : list (l) of lists of arb
+        Nodes of the special point, each followed by those of the eigenvector if there is one.
+    value : arb
+        The parameter at the special point.
+    bits : int
+        Precision.
     turn : Normal, optional
-        At a fold the unknown along which the branch goes on.
+        At a fold the unknown that is the tile's coordinate.
     pair : bool
-        A pair of multipliers crosses the circle: no multiplier is 1 or -1 in the tile.
+        Whether a pair of multipliers crosses the circle; then no multiplier may be 1 or -1 in the tile.
 
     Raises
     ------
     Obstacle
-        If one of the three is not proved, or the orbits do not lie in the tile.
+        If the tile or an orbit is not proved, or the orbits do not lie in the tile.
     """
     motif = family.motif
     if not len(motif):
@@ -264,7 +271,7 @@ def _chain(
     apart: str,
     pair: bool,
 ) -> list[Entry]:
-    """`crossing` with orbits this far from the point."""
+    """Do `crossing` with orbits at the distance `apart` from the point."""
     n = family.motif.node
     nodes = [list(node[:n]) for node in z]
     center = texts(value.mid(), DIGITS)[0]
@@ -296,11 +303,12 @@ def _chain(
 
 
 def orbit_at(family: Family, value: str, start: Nodes, bits: int) -> Box:
-    """The orbit near `start` at a value of the parameter.
+    """Prove the orbit near `start` at a value of the parameter.
 
     Raises
     ------
     Obstacle
+        If existence is not proved.
     """
     system = family.system(ball(value))
     z, _ = refine(system, start, [], bits)
@@ -308,7 +316,7 @@ def orbit_at(family: Family, value: str, start: Nodes, bits: int) -> Box:
 
 
 def orbit_entry(family: Family, value: str, box: Box) -> Entry:
-    """The orbit for a certificate, with a basis that shows its multipliers plainly."""
+    """Return the box of an orbit for a certificate, with a basis for the checker."""
     return orbit_box(family.motif, box, value, basis_texts(family.system(ball(value)), box.balls()[0]))
 
 

@@ -1,4 +1,4 @@
-"""Proofs in words."""
+"""Texts of proofs."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ SAYS = {
 
 
 def spelling(motif: Motif, parameters: Mapping[str, Any]) -> str:
-    """The word of what is proved, as tables and pictures have it: one spelling for one motion."""
+    """Return the word of a proved motion in the spelling of tables and pictures, which is the same for a motion and its rotations."""
     word = Word(tuple(motif.events), tuple(motif.modes), shaken(motif.frictionless))
     if motif.half:
         return f"symmetric {word.with_image().spelled()}"
-    # mirror images are motions of the machine, however the enclosed parameter varies, where both sides are alike
+    # if both sides are equal, mirror images are motions of the machine for every value of the parameter
     alike = all(parameters.get(f"{name}_left") == parameters.get(f"{name}_right") for name in SIDED)
     slope = float(parameters.get("slope", 0.0 if motif.machine != "cavity" else 1.0))
     return word.spelled(alike and slope == 0.0)
 
 
 def said(lines: Sequence[str], obstacles: Sequence[Obstacle]) -> str:
-    """What is proved, and what was in the way."""
+    """Join the lines of a proof and its obstacles."""
     return "\n".join([*lines, *(f"  {obstacle}" for obstacle in obstacles)])
