@@ -32,7 +32,7 @@ TRACED = "values whose motions are not traced"
 GIVEN, BETWEEN, SCATTERED = "given values", "values between changes", "scattered values"
 ENDS = "ends of stable stretches"
 WAITING = "branches that leave others"
-FOLLOWED = 4  # starts that one end of a stable stretch costs, at which the lost motion is followed
+FOLLOWED = 4  # starts that following the motion beyond one end of a stable stretch counts as
 LONGEST_SCAN = 2  # largest number of scattered values, relative to `scan`
 
 

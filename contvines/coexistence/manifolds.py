@@ -1,8 +1,8 @@
 """Stable manifolds of saddles on a plane section: the curves that separate basins.
 
-They are grown without the inverse of the motion (England, Krauskopf and Osinga, SIAM J. Appl. Dyn. Syst. 3 (2004) 161): the next
-point lies on a small circle round the last one, where its image falls on the part of the curve that is known already. At a wall a curve
-goes on from the other velocity there: just before an impact and just after it the motion is one and the same.
+The curves are grown without inverting the section map (England, Krauskopf and Osinga, SIAM J. Appl. Dyn. Syst. 3 (2004) 161): the next
+point lies on a small circle around the last one, where its image falls on the known part of the curve. At a wall a curve continues at
+the velocity after (or before) the impact, which belongs to the same motion.
 """
 
 from __future__ import annotations
@@ -30,30 +30,37 @@ if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
 
-LINEAR = 0.1  # distances of the first point from the saddle by which its images are off: a saddle beside a grazing impact is bent
-STRAIGHT = 0.05  # angle between two steps below which the radius grows
-BENT = 2.6  # largest angle of a corner
-INWARD = 1.55  # largest angle to the inward normal at which a curve comes out of a wall
-PIECES = 40  # of a curve between walls, at most
-DIFFERENCE = 0.01  # of the first point's distance: for the derivative at the saddle
-LENGTH = 20.0  # sizes of the plane: a curve ends when it is so long
-MOST = 1_200_000  # periods simulated for all curves
+# largest error of the linear prediction of the first point's image, relative to the point's distance from the saddle; it is larger
+# for a saddle beside a grazing impact, where a smaller distance is tried
+LINEAR = 0.1
+STRAIGHT = 0.05  # radians: angle between two steps below which the radius grows
+BENT = 2.6  # radians: largest angle of a corner
+INWARD = 1.55  # radians: largest angle to the inward normal at which a curve leaves a wall
+PIECES = 40  # largest number of pieces of a curve between walls
+DIFFERENCE = 0.01  # step of the differences at the saddle, relative to the first point's distance
+LENGTH = 20.0  # largest length of a curve, relative to the plane's size
+MOST = 1_200_000  # largest number of periods simulated for all curves
 
 
 @dataclass(frozen=True)
 class Manifold:
-    """One of the two halves of a saddle's stable manifold.
+    """A piece of one of the two halves of a saddle's stable manifold.
 
     Attributes
     ----------
     branch : str
-        Of the saddle.
+        Label of the saddle's branch.
     word : str
+        Word of the saddle.
     points : float array (n, 2)
-        From the saddle outwards, or from a wall on at which the one before it ends.
+        From the saddle outwards, or from the wall at which the piece before it ends.
     ended : str
-        ``leaves`` the plane, comes to a ``wall`` and goes on in the next one, is ``long`` (in length, or in the time spent on it), or
-        ``breaks``: cannot be followed further, as where the motion is not continuous.
+        How the piece ends:
+
+        - ``leaves``: it leaves the plane;
+        - ``wall``: it comes to a wall, and the next piece continues it;
+        - ``long``: it is cut, because its length or the number of simulated periods is used up;
+        - ``breaks``: it cannot be followed further, for example where the motion is discontinuous.
     """
 
     branch: str
@@ -62,7 +69,7 @@ class Manifold:
     ended: str
 
     def to_dict(self, sizes: ArrayLike = 1.0) -> dict[str, Any]:
-        """Ready for JSON; `sizes` are of one of each coordinate in the unit in which it is shown."""
+        """Return the piece ready for JSON; `sizes` are the factors from computed to displayed coordinates."""
         return {
             "branch": self.branch,
             "word": self.word,
@@ -72,21 +79,23 @@ class Manifold:
 
 
 def stable_manifolds(graph: Graph, at: float, limits: np.ndarray, *, most: int = MOST) -> list[Manifold]:
-    """Both halves of the stable manifolds of all real saddles, and their images, that a graph has at a value of its parameter.
+    """Compute both halves of the stable manifolds of all real saddles of a graph, and of their images under symmetries, at a parameter value.
 
     Parameters
     ----------
     graph : Graph
+        With its problems attached.
     at : float
+        Value of its parameter.
     limits : float array (2, 2)
-        Smallest and largest coordinates of the plane.
+        Lower and upper limit of each coordinate of the plane.
     most : int
-        Periods that are simulated for all curves together, of which those that are left have equal parts: many saddles have short curves.
+        Largest number of periods simulated for all curves together, shared equally: with many saddles the curves are shorter.
 
     Returns
     -------
     list of Manifold
-        None for saddles of motions with more than two states.
+        Empty for saddles of motions with more than two states.
     """
     wanted: list[tuple[str, str, Section, np.ndarray, int]] = []
     same = Settings.kept(graph.settings).same
@@ -103,7 +112,7 @@ def stable_manifolds(graph: Graph, at: float, limits: np.ndarray, *, most: int =
                 (branch.label, word, section, place, periods)
                 for place in _places(branch.problem, section, u, at, same)
             ]
-    wanted.sort(key=lambda entry: entry[-1])  # those of few periods separate wide basins
+    wanted.sort(key=lambda entry: entry[-1])  # saddles of few periods first: they separate wide basins
     found: list[Manifold] = []
     for k, (label, word, section, place, periods) in enumerate(wanted):
         counted = _Counted(section.step, most // (len(wanted) - k) // periods)
@@ -114,12 +123,22 @@ def stable_manifolds(graph: Graph, at: float, limits: np.ndarray, *, most: int =
 
 
 def check_plane(graph: Graph, parameter: str, plane: tuple[str, str], others: Mapping[str, float]) -> None:
-    """Refuse a plane that is not the section of the graph's motions.
+    """Check that a plane is the section of a graph's motions.
+
+    Parameters
+    ----------
+    graph : Graph
+    parameter : str
+        The parameter of the plane's machine.
+    plane : (str, str)
+        Names of the plane's coordinates.
+    others : mapping
+        Values of the other coordinates, which must be zero.
 
     Raises
     ------
     ValueError
-        Saying the way out.
+        If it is not; the message suggests a remedy.
     """
     if graph.parameter != parameter:
         raise ValueError(f"saddles: the graph's parameter is {graph.parameter}, not {parameter}")
@@ -127,7 +146,7 @@ def check_plane(graph: Graph, parameter: str, plane: tuple[str, str], others: Ma
     for branch in graph.branches.values():
         if (
             branch.problem is not None and branch.description.get("word") != ""
-        ):  # what never slides has no section
+        ):  # a motion without events has no section
             names = section_of(branch.problem, float(branch.values[0])).names
             break
     if not names:
@@ -141,7 +160,7 @@ def check_plane(graph: Graph, parameter: str, plane: tuple[str, str], others: Ma
 
 
 class _Counted:
-    """A section's step, and how often it has been taken of at most so many times."""
+    """A section map that counts its evaluations, `steps`; `most` is their largest number, which the caller checks."""
 
     def __init__(self, step: Callable[[np.ndarray], np.ndarray], most: int) -> None:
         self.step, self.most, self.steps = step, most, 0
@@ -152,7 +171,7 @@ class _Counted:
 
 
 def _places(problem: Problem, section: Section, u: np.ndarray, p: float, same: float) -> list[np.ndarray]:
-    """Where a solution and its images under the problem's symmetries meet the section, each point once; `same` is `Settings.same`."""
+    """Return the points at which a solution and its images under symmetries meet the section, each once; `same` is `Settings.same`."""
     found: list[np.ndarray] = []
     for one in (u, *(image_of(symmetry, u, p) for symmetry in problem.symmetries)):
         for place in section.rounds(one):
@@ -162,7 +181,7 @@ def _places(problem: Problem, section: Section, u: np.ndarray, p: float, same: f
 
 
 def _saddles(branch: Branch, at: float) -> list[np.ndarray]:
-    """Unknowns of the branch's real solutions at a value with one multiplier outside the circle."""
+    """Return the unknowns of the branch's solutions at a value that have exactly one multiplier outside the unit circle."""
     engine, solved = solutions_at(branch, at)
     return [one.u for one in solved if np.count_nonzero(np.abs(engine.multipliers(one.row)) > 1.0) == 1]
 
@@ -170,7 +189,7 @@ def _saddles(branch: Branch, at: float) -> list[np.ndarray]:
 def _halves(
     section: Section, step: _Counted, place: np.ndarray, limits: np.ndarray
 ) -> list[tuple[np.ndarray, str]]:
-    """The pieces of both halves, and how each ends."""
+    """Return the pieces of both halves of the stable manifold of a saddle at `place`, and how each piece ends."""
     size = float(np.ptp(limits, axis=1).max())
     found = [
         saddle for first in MANIFOLDS.first if (saddle := _linear(step, place, first * size)) is not None
@@ -178,9 +197,8 @@ def _halves(
     if not found:
         return []
     first, ray, slow, _ = next((saddle for saddle in found if saddle[-1] < LINEAR), found[0])
-    image = (
-        (lambda x: step(step(x))) if slow < 0.0 else step
-    )  # the two halves change places: every second image stays on one
+    # with a negative multiplier the map exchanges the two halves, and its square keeps them
+    image = (lambda x: step(step(x))) if slow < 0.0 else step
     struck = section.struck if isinstance(section, Walled) else None
     pieces = []
     for side, most in ((1.0, (step.most + step.steps) // 2), (-1.0, step.most)):
@@ -192,9 +210,22 @@ def _halves(
 def _linear(
     step: Callable[[np.ndarray], np.ndarray], place: np.ndarray, first: float
 ) -> tuple[float, np.ndarray, float, float] | None:
-    """A distance, the stable direction and multiplier of a saddle, from differences of a hundredth of it, and, in such distances, how far
+    """Linearise the section map at a saddle by differences, with step `DIFFERENCE` times `first`.
 
-    the images at the distance are from where these have them; None where it is no saddle.
+    Parameters
+    ----------
+    step : callable
+        The section map.
+    place : float array (2,)
+        The saddle.
+    first : float
+        Distance from the saddle of the first point on the manifold.
+
+    Returns
+    -------
+    (first, ray, slow, off) or None
+        The distance, the unit stable direction, the stable multiplier, and the error of the linear prediction of the first points' images,
+        relative to `first`. None if the point is no saddle.
     """
     jacobian, apart = np.empty((2, 2)), DIFFERENCE * first
     for j in range(2):
@@ -215,7 +246,21 @@ def _linear(
 
 
 class _Half:
-    """One half of a stable manifold while it grows; pieces of it follow one another through walls."""
+    """One half of a stable manifold while it grows, as a list of pieces between walls.
+
+    Parameters
+    ----------
+    image : callable
+        The section map, or its square.
+    struck : callable or None
+        ``struck(point, near)`` returns the point on the other side of an impact, if `point` lies at a wall; see `Walled`.
+    place, ray : float array (2,)
+        The saddle, and the stable direction of this half.
+    first : float
+        Distance of the first point from the saddle.
+    limits : float array (2, 2)
+        Of the plane.
+    """
 
     def __init__(
         self,
@@ -233,12 +278,12 @@ class _Half:
         self.smallest = min(MANIFOLDS.smallest * self.size, 0.01 * first)
 
     def grown(self, more: Callable[[], bool]) -> list[tuple[np.ndarray, str]]:
-        """The pieces, and how each ends."""
+        """Grow the curve while ``more()`` is true; return its pieces and how each ends."""
         self.more = more
         ends = [self._on(self.length, TURN)]
         while ends[-1] == "leaves" and self._through():
             ended = self._on(MANIFOLDS.corner * self.size, INWARD)
-            if len(self.pieces[-1]) == 1:  # it does not come out of the wall
+            if len(self.pieces[-1]) == 1:  # the curve does not leave the wall
                 self.pieces.pop()
                 break
             ends[-1] = "wall"
@@ -246,7 +291,15 @@ class _Half:
         return [(np.array(points), end) for points, end in zip(self.pieces, ends, strict=True)]
 
     def _on(self, radius: float, widest: float) -> str:
-        """Grow the last piece as far as it goes."""
+        """Grow the last piece and return how it ends.
+
+        Parameters
+        ----------
+        radius : float
+            First radius of the circles.
+        widest : float
+            Largest angle to the heading of the first step.
+        """
         points, size, limits = self.pieces[-1], self.size, self.limits
         while self.length < LENGTH * size and self.more():
             starts, ends = self._segments()
@@ -257,7 +310,7 @@ class _Half:
             if found is None:
                 radius *= 0.5
                 if radius < self.smallest:
-                    # no start beyond a wall
+                    # at the plane's edge or a wall, beyond which no start exists, the curve has left the plane
                     edge = np.abs(points[-1][:, None] - limits).min() < MANIFOLDS.corner * size
                     at_wall = len(points) > 1 and (edge or self._struck() is not None)
                     return "leaves" if at_wall else "breaks"
@@ -274,7 +327,7 @@ class _Half:
         return "long"
 
     def _through(self) -> bool:
-        """Begin another piece on the other side of an impact; whether there is one within the plane."""
+        """Begin another piece on the other side of an impact; return whether it lies within the plane."""
         found = self._struck()
         if found is None or np.any(found[0] < self.limits[:, 0]) or np.any(found[0] > self.limits[:, 1]):
             return False
@@ -283,18 +336,18 @@ class _Half:
         return True
 
     def _struck(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Where the curve goes on if its last point is at a wall, and the direction away from the wall."""
+        """Return the point at which the curve continues if its last point is at a wall, and the direction away from the wall; otherwise None."""
         return None if self.struck is None else self.struck(self.pieces[-1][-1], MANIFOLDS.corner * self.size)
 
     def _segments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where the segments of all pieces begin and end."""
+        """Return the beginnings and the ends of the segments of all pieces, each of shape (n, 2)."""
         pieces = [np.array(points) for points in self.pieces]
         return np.concatenate([x[:-1] for x in pieces]), np.concatenate([x[1:] for x in pieces])
 
 
-TURN = 0.3  # angle between two steps beyond which the radius shrinks
-ARCS = 12  # candidates on the part of a circle that is searched
-REFINED = 60  # times that an angle is refined, at most
+TURN = 0.3  # radians: angle between two steps beyond which the radius shrinks
+ARCS = 12  # number of arcs into which the searched part of a circle is divided
+REFINED = 60  # largest number of iterations for the angle
 
 
 def next_point(
@@ -305,7 +358,26 @@ def next_point(
     radius: float,
     widest: float,
 ) -> tuple[np.ndarray, int, float] | None:
-    """The point on the circle whose image lies on the known segments, from `known[2]` on, the segment on which it lies, and the angle turned by."""
+    """Find the next point of a stable manifold: a point of a circle whose image lies on the known curve.
+
+    Parameters
+    ----------
+    image : callable
+        The section map.
+    known : (starts, ends, at)
+        Segments of the known curve, and the number of the segment on which the last point's image lies.
+    last, heading : float array (2,)
+        The last point and the direction of the last step.
+    radius : float
+        Of the circle around the last point.
+    widest : float
+        Largest angle to the heading, in radians.
+
+    Returns
+    -------
+    (point, segment, angle) or None
+        The point, the segment on which its image lies, and the angle to the heading; None if there is none.
+    """
     middle, near = np.arctan2(heading[1], heading[0]), MANIFOLDS.on_curve * radius
     sides: dict[float, tuple[float, int, bool]] = {}
 
@@ -313,7 +385,7 @@ def next_point(
         return last + radius * np.array([np.cos(middle + turn), np.sin(middle + turn)])
 
     def gap(turn: float) -> float:
-        """Distance of the image of a point of the circle from the curve; 0 where it lies on it."""
+        """Signed distance of the image of a point of the circle from the curve; 0 if the image lies on it."""
         if turn not in sides:
             sides[turn] = _beside(*known, image(place(turn)))
         value = sides[turn][0]
@@ -327,18 +399,19 @@ def next_point(
             continue
         try:
             turn: float = brentq(gap, low, high, xtol=TINY, maxiter=REFINED, disp=False)  # pyright: ignore[reportAssignmentType]
-        except ValueError:  # the image cannot be told
+        except ValueError:  # the image is not finite
             return None
         off, (_, segment, beyond) = gap(turn), sides[turn]
-        if not beyond and abs(off) <= MANIFOLDS.jump * radius:  # else the motion jumps there
+        if not beyond and abs(off) <= MANIFOLDS.jump * radius:  # otherwise the map is discontinuous
             return place(turn), segment, abs(turn)
     return None
 
 
 def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int, bool]:
-    """Signed distance of a point to known segments near that numbered `at` or later ones, the nearest segment, and whether the point is
+    """Return the signed distance of a point from the known curve, the nearest segment, and whether the point lies beyond the curve's end.
 
-    beyond what is known: then the distance is that to the last segment's line, whose side still tells where a saddle throws it.
+    Only segments from number ``at - 2`` on are searched. Beyond the end, the distance is that to the line of the last segment: its sign
+    still shows to which side of the manifold the saddle's unstable direction sends the point.
     """
     if not np.all(np.isfinite(point)):
         return float("nan"), at, False

@@ -1,4 +1,4 @@
-"""Starts of a plain map, and the cycles that they settle on."""
+"""Populations of maps: starts in a box, and the cycles on which they settle."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from ..problems.maps import MapProblem
     from ..problems.protocol import Problem
 
-TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur before
-ZERO = (
-    np.finfo(float).eps ** 2
-)  # of the box: what decays to zero geometrically is zero, not an unknown of that size
-LONGEST = 64  # of the cycles looked for
-GROWTH, BLOCKS = 4000, 20  # iterations for a Lyapunov exponent, and blocks of them for its error
-BRIEF = (5, 48)  # values, and starts at each, of a brief look
+TRANSIENTS = (200, 800, 3200)  # iterations before each test whether a motion recurs
+# relative to the box: components below it are zero; they would decay geometrically for ever
+ZERO = np.finfo(float).eps ** 2
+LONGEST = 64  # longest period of the cycles that starts settle on
+GROWTH, BLOCKS = 4000, 20  # iterations for a Lyapunov exponent, and number of blocks of them for its error
+BRIEF = (5, 48)  # number of values, and of starts at each, of the brief search after a diagram
+# longest period of the unstable cycles in a chaotic motion, and iterations of the motion that are searched for them
 EMBEDDED, EMBEDDED_IN = (
     6,
     4000,
-)  # longest unstable cycle looked for, and iterations of a chaotic motion in which it is
-NEAREST = 400  # returns looked at for each length
-NEWTON, FROM_GUESS = 12, 0.05  # steps, and how far they may lead, relative to the box
-ANYWHERE = 2.0  # likewise, where there is but a start
+)
+NEAREST = 400  # largest number of close returns that are tried for each period
+NEWTON, FROM_GUESS = 12, 0.05  # Newton steps, and largest distance from the guess relative to the box
+ANYWHERE = 2.0  # the same distance for a start, which is no close guess
 
 
 class MapPopulation(StartsInBox):
@@ -40,10 +40,10 @@ class MapPopulation(StartsInBox):
     ----------
     problem : MapProblem
     box : sequence of (low, high), optional
-        One pair per state; by default the cycle's own range, widened by its size on every side.
+        One pair per state; by default the range of the problem's cycle, widened by its size on each side.
     """
 
-    across = 200  # starts across and up in a picture of basins where no number is given
+    across = 200  # default number of starts across and up in a picture of basins
     brief = BRIEF
 
     def __init__(self, problem: MapProblem, box: Sequence[tuple[float, float]] | None = None) -> None:
@@ -53,11 +53,11 @@ class MapPopulation(StartsInBox):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """x0, x1, ..."""
+        """Names of the states: x0, x1, ..."""
         return tuple(f"x{j}" for j in range(self.node))
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts (Sobol, scrambled by the seed), shape (count, d)."""
+        """Return low-discrepancy starts (Sobol, scrambled by the seed), shape (count, d); the box does not depend on `p`."""
         from scipy.stats import qmc
 
         draw = qmc.Sobol(self.node, scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
@@ -65,11 +65,11 @@ class MapPopulation(StartsInBox):
         return self._box[:, 0] + points * np.ptp(self._box, axis=1)
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
-        """Iterate all starts and recognise what they settle on; see `contvines.problems.abilities.Population`."""
+        """Iterate all starts and classify the motions on which they settle; see `contvines.problems.abilities.Population`."""
         step = _Iteration(self.problem, p, np.asarray(starts, dtype=float))
         x = np.array(starts, dtype=float)
         n = len(x)
-        periods = np.zeros(n, dtype=int)  # 0: not yet, -1: escaped
+        periods = np.zeros(n, dtype=int)  # 0: not settled yet, -1: escaped
         for transient in TRANSIENTS:
             left = np.flatnonzero(periods == 0)
             if not left.size:
@@ -132,7 +132,7 @@ class MapPopulation(StartsInBox):
         return motions, index, np.zeros(len(x), dtype=bool)
 
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Unstable cycles that the chaotic motion through a state passes near; see `contvines.problems.abilities.Population`."""
+        """Find unstable cycles near a chaotic motion, from its close returns; see `contvines.problems.abilities.Population`."""
         step = _Iteration(self.problem, p, state[None])
         self.work += EMBEDDED_IN
         run = np.empty((EMBEDDED_IN, self.node))
@@ -153,15 +153,15 @@ class MapPopulation(StartsInBox):
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Cycles, stable or not, to which Newton's method leads from starts; see `contvines.problems.abilities.Population`.
+        """Find cycles, stable or not, by Newton's method from starts; see `contvines.problems.abilities.Population`.
 
-        One of their points at least lies in the box of starts.
+        Only cycles with at least one point in the box of starts are returned.
         """
         cycles: list[np.ndarray] = []
         low, high = self._box.T
         for start in np.asarray(starts, dtype=float):
             for period in range(1, EMBEDDED + 1):
-                with np.errstate(all="ignore"):  # far away a map may leave the range of numbers
+                with np.errstate(all="ignore"):  # far away a map may overflow
                     points = self._solved(np.repeat(start[None], period, axis=0), p, ANYWHERE)
                 if points is None or any(self._one(points, known) for known in cycles):
                     continue
@@ -170,11 +170,11 @@ class MapPopulation(StartsInBox):
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
-        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
+        """Rebuild the problem of a motion from a journal's record; see `contvines.problems.abilities.Population`."""
         return self.problem.cycle_through(np.reshape(u, (-1, self.node)), p)
 
     def _solved(self, guess: np.ndarray, p: float, reach: float = FROM_GUESS) -> np.ndarray | None:
-        """The points, shape (n, d), of the cycle next to a guess, by Newton's method on the n-th image; None if there is none."""
+        """Return the points, shape (n, d), of a cycle near a guess, by Newton's method on the n-th iterate; None if it fails."""
         x, n, functions = guess[0].copy(), len(guess), self.problem.functions
         for _ in range(NEWTON):
             self.work += n
@@ -196,12 +196,12 @@ class MapPopulation(StartsInBox):
         return None
 
     def _one(self, points: np.ndarray, known: np.ndarray) -> bool:
-        """Whether a cycle is a known one, or that one several times round."""
+        """Whether a cycle equals a known one, or is a known one traversed several times."""
         gaps = np.abs(known - points[0]).max(axis=1)
         return len(points) % len(known) == 0 and bool(gaps.min() < MAPS.near * self.size)
 
     def _wandering(self, x: np.ndarray, p: float) -> Motion[Problem]:
-        """A motion that does not recur, judged by the growth of a tangent vector; blocks give the error of the mean."""
+        """Classify a motion that does not recur by its Lyapunov exponent, the mean growth of a tangent vector; its error is that of block means."""
         state = x.copy()
         functions = self.problem.functions
         vector = np.ones(self.node) / np.sqrt(self.node)
@@ -218,7 +218,7 @@ class MapPopulation(StartsInBox):
 
 
 class _Iteration:
-    """The map on many points: at once where the function takes arrays of columns, else one by one."""
+    """The map at a value of the parameter, for many points: one call if the function accepts arrays of columns, otherwise point by point."""
 
     def __init__(self, problem: MapProblem, p: float, sample: np.ndarray) -> None:
         self.functions, self.p = problem.functions, p
@@ -231,16 +231,16 @@ class _Iteration:
         return np.array([self.one(point) for point in x])
 
     def one(self, x: np.ndarray) -> np.ndarray:
-        """The image of one point, whatever it is."""
+        """Return the image of one point as a flat array."""
         return np.asarray(self.functions.f(x, self.value), dtype=float).reshape(-1)
 
     def _takes_columns(self, x: np.ndarray) -> bool:
         try:
             columns = np.array(self.functions.f(np.ascontiguousarray(x.T), self.value), dtype=float)
             single = np.array([self.one(point) for point in x])
-        except Exception:  # a function of one point: whatever it says of columns
+        except Exception:  # a function written for one point may raise any error for columns
             return False
-        # a power of numbers and one of arrays may differ in the last digit
+        # powers of numbers and of arrays may differ in the last digit
         agree = FlowSettings.agree
         return columns.shape == x.T.shape and np.allclose(
             columns.T, single, rtol=agree, atol=agree, equal_nan=True

@@ -1,4 +1,4 @@
-"""Two graphs of one problem as one: what both have is kept once."""
+"""Merge two graphs of one problem: branches and special points in both are kept once."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
 
 
 def merge(graph: Graph, other: Graph) -> dict[str, str]:
-    """Add to a graph what another one has beside it; the first one is changed.
+    """Add to a graph the branches, special points, switches and attractors of another one that it lacks; the first graph is changed in place.
 
     Parameters
     ----------
     graph, other : Graph
-        In the same parameter of the same machine, with their problems attached.
+        Of the same machine and the same parameter, with their problems attached.
 
     Returns
     -------
     dict
-        The labels of the other graph, and what they are called here.
+        Label in `graph` of each branch and special point of `other`, by its label there.
 
     Raises
     ------
     ValueError
-        If they are of different parameters or machines, or a branch has no problem.
+        If parameters or machines differ, or a branch has no problem.
     """
     _refuse_strangers(graph, other)
     run = run_on(graph)
@@ -69,7 +69,7 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
 
 
 def _special(run: Run, point: SpecialPoint, called: dict[str, str]) -> str:
-    """The label of a special point here: of the same one where there is one, else a new one."""
+    """Return the label in the run's graph of an equal special point; if there is none, add the point under a new label."""
     graph = run.graph
     form = point.attached.canonical(point.u, point.value)
     for known in graph.special.values():

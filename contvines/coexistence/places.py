@@ -1,7 +1,7 @@
-"""Where an atlas looks beside the values it was given.
+"""Parameter values at which an atlas simulates, besides the given ones.
 
-It looks in every stretch between two changes and evenly all over, and past the ends of stable stretches, where the motion is followed that ceases to
-be stable there: what it hands over to is simulated.
+They lie in every stretch between two changes of stability, evenly scattered over the interval, and just beyond the ends of stable
+stretches, where a simulation that begins on the motion that is lost leads to the attractor that replaces it (the handover).
 """
 
 from __future__ import annotations
@@ -22,16 +22,18 @@ from ..problems.abilities import Population
 from .census import UNBRANCHED, Counted, followed
 from .settings import ATLAS
 
-# of the interval: a kind of motion that has no branch is told of up to so near to where it ends
+# part of the interval to which the ends of a kind of motion without a branch are resolved
 RESOLVED = 0.01
-TURN = 0.5 * (np.sqrt(5.0) - 1.0)  # of the additive recurrence, see `scattered`
-PAST = 0.01  # of a stable stretch's width: so far past its end a motion is followed, where it settles too slowly to be told farther, ...
-BEYOND_CASCADE = 1.0  # ... and so far, for a cascade of doublings is over after 0.27 of the stretch before it (Feigenbaum's 1 / (4.669 - 1)), ...
-FARTHER = 4.0  # times as far again where all that was met is too slow
+TURN = 0.5 * (np.sqrt(5.0) - 1.0)  # increment of the additive recurrence in `scattered`
+# distances beyond the end of a stable stretch at which the motion is followed, relative to the stretch's width:
+PAST = 0.01  # just beyond the end;
+# beyond a cascade of doublings, which is over after 0.27 of the stretch before it (Feigenbaum's 1 / (4.669 - 1));
+BEYOND_CASCADE = 1.0
+FARTHER = 4.0  # relative to the largest distance, if all motions there settle too slowly to be recognised
 
 
 def scattered(within: tuple[float, float], seed: int, k: int) -> float:
-    """The k-th of a sequence of values that fills an interval evenly at every length.
+    """Return the k-th of a sequence of values that fills an interval evenly, whatever the number of values.
 
     ``shift + k (sqrt(5) - 1) / 2 mod 1``; among its first n values no gap is wider than 1.9 / n of the interval (the
     three-distance theorem; L. Ramshaw, J. Number Theory 13 (1981) 138).
@@ -42,17 +44,24 @@ def scattered(within: tuple[float, float], seed: int, k: int) -> float:
 
 
 def changes(graph: Graph) -> np.ndarray:
-    """Values at which a known real motion becomes stable or ceases to be, in increasing order, and the interval's ends."""
+    """Return the values at which a known real motion gains or loses stability, and the interval's ends, in increasing order."""
     ends = {e for b in graph.branches.values() if b.real for pair in b.stable_intervals() for e in pair}
     return np.array(sorted({*graph.within, *ends}))
 
 
 def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
-    """Values where what attracts may differ from what has been seen at `asked`, at most `most`, those of wide stretches first.
+    """Return values at which the attractors may differ from those found at the simulated values.
 
-    Between two neighbouring changes of what is stable something else may have taken over: there is one value at least in
-    each such stretch, in its middle if none lies there, and one right beyond each change, where a motion that ceases to be stable
-    hands over to another, and beside each end of the interval.
+    Each stretch between two neighbouring changes of stability may have other attractors. The values returned are the middle of each
+    stretch without a simulated value, and a value close to each end of each stretch, the interval's ends included, without one near.
+
+    Parameters
+    ----------
+    graph : Graph
+    asked : sequence of float
+        The simulated values.
+    most : int
+        Largest number of values returned, those of wide stretches first.
     """
     size = graph.within[1] - graph.within[0]
     known = np.sort(np.asarray(asked, dtype=float))
@@ -78,18 +87,18 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
 def unresolved(
     met: Mapping[str, Sequence[float]], asked: Sequence[float], within: tuple[float, float], most: int
 ) -> list[float]:
-    """Values between two neighbours of which one has met a kind of motion without a branch and the other has not.
-
-    At most `most`, those of distant neighbours first.
+    """Return the middles between two neighbouring values of which only one has a kind of motion without a branch.
 
     Parameters
     ----------
     met : mapping
-        The values at which each kind has been met.
+        For each kind of motion the values at which it was found.
     asked : sequence of float
-        The values at which it would have been met, had it been there.
+        All simulated values.
     within : (float, float)
+        The interval.
     most : int
+        Largest number of values returned, those between distant neighbours first.
     """
     wanted: dict[float, float] = {}
     for kind in UNBRANCHED:
@@ -101,7 +110,7 @@ def unresolved(
 
 
 def unknown(graph: Graph, asked: Sequence[float]) -> list[tuple[float, float]]:
-    """Stretches of the interval, none narrower than a hundredth, with no stable branch and none of the values `asked`."""
+    """Return the stretches of the interval, wider than `RESOLVED` of it, without a stable branch and without a simulated value (`asked`)."""
     low, high = graph.within
     covered = [pair for b in graph.branches.values() if b.real for pair in b.stable_intervals()]
     marks = sorted({low, high, *asked, *(end for pair in covered for end in pair)})
@@ -115,19 +124,20 @@ def unknown(graph: Graph, asked: Sequence[float]) -> list[tuple[float, float]]:
 # ------------------------------------------------------------------ past the ends of stable stretches
 @dataclass(frozen=True)
 class End:
-    """One end of a stable stretch of a real branch, beyond which no other stretch goes on.
+    """One end of a stable stretch of a real branch, beyond which no other stable stretch begins.
 
     Attributes
     ----------
     label : str
         Of the branch.
     value : float
+        Of the parameter at the end.
     side : float
-        1.0 where larger values lie beyond, -1.0 where smaller ones do.
+        1.0 for an upper end, -1.0 for a lower one.
     width : float
         Of the stretch.
     places : tuple of int
-        Points of the branch there, stable ones, the end itself first.
+        Indices of the branch's points there, the end itself first, then its neighbours.
     """
 
     label: str
@@ -138,17 +148,17 @@ class End:
 
     @property
     def key(self) -> tuple[str, float, float]:
-        """Equal for one end only."""
+        """Identifier of the end."""
         return self.label, self.value, self.side
 
 
 class Handover:
-    """Ends of stable stretches, each followed once.
+    """Follow motions beyond the ends of their stable stretches by simulation, each end once.
 
     Parameters
     ----------
     run : Run
-        Of the atlas.
+        The run whose graph has the stretches.
     population : Population
     """
 
@@ -157,12 +167,12 @@ class Handover:
         self.done: set[tuple[str, float, float]] = set()
 
     def left(self) -> list[End]:
-        """The ends that have not been followed, those of wide stretches first."""
+        """Return the ends that have not been followed, those of wide stretches first."""
         found = [end for end in loose_ends(self.run.graph) if end.key not in self.done]
         return sorted(found, key=lambda end: (-end.width, end.value, end.side, end.label))
 
     def follow(self, end: End) -> list[Counted]:
-        """Start on the motion at the end of its stretch, to either side of it, and simulate what it becomes just beyond."""
+        """Simulate just beyond an end, from starts to either side of the motion at the end; return the motions reached."""
         self.done.add(end.key)
         low, high = self.run.graph.within
         near, far = (min(part * end.width, ATLAS.farthest * (high - low)) for part in (PAST, BEYOND_CASCADE))
@@ -179,7 +189,7 @@ class Handover:
         return [counted for counted in found if counted.attractor.kind != "impossible"]
 
     def _beside(self, end: End, p: float) -> np.ndarray | None:
-        """Two starts beside the motion at the end of its stretch, shape (2, n); None if it cannot be simulated."""
+        """Return two starts beside the motion at an end, shape (2, n); None if it cannot be simulated."""
         branch = self.run.graph.branches[end.label]
         for place in end.places:
             try:
@@ -201,7 +211,7 @@ class Handover:
 
 
 def loose_ends(graph: Graph) -> list[End]:
-    """Ends of stable stretches of real branches inside the interval, beyond which no other stretch goes on."""
+    """Return the ends of stable stretches of real branches inside the interval, beyond which no other stable stretch begins."""
     low, high = graph.within
     size = high - low
     stretches = [stretch for b in graph.branches.values() if b.real for stretch in _stretches(b)]
@@ -220,7 +230,7 @@ def loose_ends(graph: Graph) -> list[End]:
 
 
 def _together(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
-    """Width of what each stretch forms with those that it meets, and these with theirs, shape (n,)."""
+    """Return for each stretch the width of the chain of stretches, meeting end to end, to which it belongs; shape (n,)."""
     meeting = np.abs(firsts[None, :] - lasts[:, None]) <= near
     low, high = np.full((2, len(firsts)), np.inf)
     _, part = connected_components(meeting, directed=False)
@@ -230,7 +240,7 @@ def _together(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
 
 
 def _stretches(branch: Branch) -> Iterator[tuple[End, End]]:
-    """The lower and the upper end of every stable stretch of a branch."""
+    """Yield the lower and the upper end of every stable stretch of a branch."""
     for first, last, stable in branch.pieces():
         if stable and branch.problem is not None:
             values = branch.values[first : last + 1]

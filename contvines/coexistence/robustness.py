@@ -1,4 +1,4 @@
-"""How far an attractor is from being lost: kicks of its state, shares of starts, changes of its parameters."""
+"""Robustness of an attractor: the smallest kick that leads to another one, its share of starts, and the parameter intervals in which it is stable."""
 
 from __future__ import annotations
 
@@ -29,43 +29,44 @@ if TYPE_CHECKING:
 
 
 MANY, FEW, MANY_ACROSS = 1024, 256, 100
-"""Starts that tell a share: many of a population whose basins are drawn with so many starts each way, few where each start is flown alone."""
+"""Default number of starts for a share: `MANY` if the population's pictures of basins have `MANY_ACROSS` starts or more each way, otherwise `FEW`
+(its starts are simulated one by one)."""
 MIRRORED = "its mirror image"
-AT_ONCE = 256  # starts of kicks, the smallest first
-LEVELS = 24  # starts along each ray from the attractor outwards
-HALVINGS = 14  # of the part of a ray in which the motion is lost
+AT_ONCE = 256  # kicks simulated in one batch; batches with small kicks come first
+LEVELS = 24  # number of kicks along each ray from the attractor outwards
+HALVINGS = 14  # bisections of the part of a ray in which the motion is lost
 
 
 @dataclass(frozen=True)
 class Robustness:
-    """How far a stable motion is from being lost at one value of the parameter.
+    """Robustness of a stable motion at one value of the parameter.
 
     Attributes
     ----------
     parameter, value, word, periods
         The motion.
     names : tuple of str
-        Coordinates of the section on which it is kicked: the states when the forcing passes phase zero, or the map's own.
+        Coordinates of the section on which it is kicked: the states when the forcing passes phase zero, or the states of a map.
     place, kick : float array (d,)
-        The point of the motion, and the change of it, of the smallest kick found that leads elsewhere, in the machine's own
-        numbers, as starts of a simulation are; a kick of nan: none did.
+        The smallest kick found that leads to another attractor: the point of the motion at which it acts, and the change of state, in
+        the machine's own units, as for starts of a simulation. The kick is nan if there is none.
     distance : float
-        Length of the kick, each coordinate in its unit (of a machine of physical quantities half-widths, and as many per
-        radian of the free oscillation); inf if no kick within the box of starts leads elsewhere. Where the boundary
-        is smooth it is exact up to about a percent; it is an upper bound always.
+        Length of the kick, each coordinate divided by its unit (for a machine in physical quantities: half-widths, and half-widths per
+        radian of the free oscillation); inf if no kick within the box of starts leads to another attractor. It is an upper bound, exact to
+        about a percent where the basin's boundary is smooth.
     reaches : str
-        What the kicked motion goes to.
+        Name of the attractor that the kicked motion reaches.
     share, share_interval
-        Share of the starts in the machine's box that reach the motion itself (not its mirror image), with a 95 % interval.
+        Share of the starts in the machine's box that reach the motion itself (not its mirror image), and its 95 % confidence interval.
     parameters : dict
-        By name the interval of a parameter in which the motion stays stable and real, the others as they are.
+        By parameter name, the interval in which the motion stays stable and real, with all other parameters fixed.
     lost : dict
-        By name of such a parameter, for either end of its interval, whether the motion is lost there; False: the search
-        ended there, half the parameter's size from its value or where the machine allows no further value.
+        By parameter name, for each end of its interval, whether the motion is lost there. False: the search ended there, half the
+        parameter's size from its value or at the limit of the values that the machine allows.
     units : dict
-        Units of parameters by name, empty where they are plain numbers.
+        Units of parameters by name; empty for plain numbers.
     gauges : dict
-        What one of a coordinate is in the unit in which it is shown, and that unit, by name; empty for plain numbers.
+        For each coordinate with a unit: the factor from computed to displayed numbers, and the unit's name.
     """
 
     parameter: str
@@ -85,18 +86,18 @@ class Robustness:
     gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
 
     def shown(self, state: np.ndarray) -> np.ndarray:
-        """A state, or a change of one, in the units in which it is shown."""
+        """Convert a state, or a change of state, to the displayed units."""
         return state * np.array([self.gauges.get(name, (1.0, ""))[0] for name in self.names])
 
     @property
     def shown_units(self) -> dict[str, str]:
-        """Units of the numbers that are shown, by name of parameter and coordinate."""
+        """Units of the displayed numbers, by name of parameter or coordinate."""
         named = (self.parameter, *self.parameters)
         own = {name: self.units[name] for name in named if self.units.get(name)}
         return own | {name: unit for name, (_, unit) in self.gauges.items()}
 
     def to_dict(self) -> dict[str, Any]:
-        """Ready for JSON, in the units that stand beside the numbers; no finite kick is null."""
+        """Return the results ready for JSON, in the units given under ``units``; without a finite kick, ``kick`` and ``distance`` are None."""
         finite = bool(np.isfinite(self.distance))
         units = self.shown_units
         return {
@@ -139,7 +140,7 @@ class Robustness:
 
 
 def _range_text(first: float, last: float, lost: tuple[bool, bool], unit: str) -> str:
-    """An interval for people; an end at which the search ended is a bound of the motion's true limit."""
+    """Describe an interval; an end at which only the search ended is a bound of the motion's true limit."""
     low, high = (f"{figures(x)} {unit}".rstrip() for x in (first, last))
     text = f"from {'' if lost[0] else 'at most '}{figures(first)} to {'' if lost[1] else 'at least '}{high}"
     beyond = ((False, "down to", low), (True, "up to", high))
@@ -158,10 +159,10 @@ def robustness(
     seed: int = 0,
     vary: Sequence[str] = (),
 ) -> Robustness:
-    """How far a branch's stable motion at a value of the parameter is from being lost.
+    """Compute the robustness of a branch's stable motion at a value of the parameter.
 
-    From every point of the motion on the section rays go out in all directions of the states; along each, starts are
-    simulated, and where the motion is lost first the distance is halved down.
+    The smallest kick is searched along rays in all directions of state space from every point of the motion on its section: starts along
+    each ray are simulated, and the first distance at which the motion is lost is refined by bisection.
 
     Parameters
     ----------
@@ -169,15 +170,15 @@ def robustness(
     at : float
         Value of its parameter.
     units : mapping, optional
-        What counts as 1 of a coordinate, by name; 1 by default.
+        Unit of each coordinate in the length of a kick, by name; 1 by default.
     directions : int
-        Rays from each point.
+        Number of rays from each point.
     starts : int, optional
-        Starts that tell the share, 1024 (of a declared machine 256); 0: none are made, the share is nan.
+        Number of starts for the share; by default 1024 (for a declared machine 256). 0: no simulation, the share is nan.
     seed : int
-        Of the starts, and of the rays where states have more than two coordinates.
+        Random seed of the starts, and of the rays if states have more than two coordinates.
     vary : sequence of str
-        Parameters whose stable intervals are wanted.
+        Parameters whose stable intervals are computed.
 
     Raises
     ------
@@ -221,12 +222,12 @@ def robustness(
 
 
 def refuse_uncomputed(branch: Branch) -> None:
-    """Refuse a branch whose stability is not computed.
+    """Raise an error for a branch whose stability is not computed.
 
     Raises
     ------
     ValueError
-        If it is not.
+        If it is not computed.
     """
     if branch.stable is None:
         raise ValueError(
@@ -235,7 +236,7 @@ def refuse_uncomputed(branch: Branch) -> None:
 
 
 def stable_at(branch: Branch, at: float) -> np.ndarray:
-    """The unknowns of a branch's stable real solution at a value of its parameter.
+    """Return the unknowns of a branch's stable real solution at a value of its parameter.
 
     Raises
     ------
@@ -255,7 +256,7 @@ def stable_at(branch: Branch, at: float) -> np.ndarray:
 
 
 def _directions(dimension: int, count: int, seed: int) -> np.ndarray:
-    """Unit vectors, shape (count, dimension): evenly round a circle, else drawn."""
+    """Return unit vectors, shape (count, dimension): evenly spaced on a circle, in higher dimensions drawn at random."""
     if dimension == 1:
         return np.array([[-1.0], [1.0]])
     if dimension == 2:
@@ -266,7 +267,20 @@ def _directions(dimension: int, count: int, seed: int) -> np.ndarray:
 
 
 class _Kicked:
-    """Starts beside the points of a motion on its section."""
+    """Simulation of a kicked motion.
+
+    Parameters
+    ----------
+    population : Population
+    p : float
+        Value of the parameter.
+    names : sequence of str
+        Coordinates of the section.
+    places : float array (m, d)
+        Points of the motion on the section.
+    sizes : float array (d,)
+        Units of the coordinates in the length of a kick.
+    """
 
     def __init__(
         self,
@@ -281,14 +295,20 @@ class _Kicked:
         self.box = population.box(p)[self.columns]
 
     def share(self, count: int, seed: int) -> tuple[float, tuple[float, float]]:
-        """Share of drawn starts that reach the motion, with its interval."""
+        """Return the share of drawn starts that reach the motion, and its 95 % confidence interval."""
         drawn = self.population.starts(count, seed, self.p)
         lost, _ = self._lost(drawn)
         share = 1.0 - float(lost.mean())
         return share, wilson(share, count)
 
     def smallest(self, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, str]:
-        """Place, kick and what it leads to, of the smallest kick found."""
+        """Return the smallest kick that leads to another attractor: place, kick (nan if there is none) and the attractor's name.
+
+        Parameters
+        ----------
+        directions : float array (n, d)
+            Unit vectors of the rays.
+        """
         place = np.repeat(self.places, len(directions), axis=0)
         along = np.tile(directions * self.sizes, (len(self.places), 1))
         longest = self._room(place, along)
@@ -298,7 +318,7 @@ class _Kicked:
         ends, begins = longest[:, None] * levels, longest[:, None] * (levels - 1.0 / LEVELS)
         for part in np.array_split(np.argsort(begins, axis=None), max(begins.size // AT_ONCE, 1)):
             if begins.flat[part[0]] >= ends[lost].min(initial=np.inf):
-                break  # these cannot hold the smallest
+                break  # all further kicks are larger than the smallest one found
             lost.flat[part], names.flat[part] = self._lost(
                 self._starts(kicks.reshape(-1, kicks.shape[2])[part])
             )
@@ -307,7 +327,7 @@ class _Kicked:
             return self.places[0], np.full(self.places.shape[1], np.nan), ""
         first = lost[rays].argmax(axis=1)
         inside, outside, reaches = begins[rays, first], ends[rays, first], names[rays, first]
-        near = inside < outside.min()  # the others cannot hold the smallest
+        near = inside < outside.min()  # only these rays can have the smallest kick
         rays, inside, outside, reaches = rays[near], inside[near], outside[near], reaches[near]
         for _ in range(HALVINGS):
             middle = 0.5 * (inside + outside)
@@ -318,7 +338,7 @@ class _Kicked:
         return place[rays[best]], outside[best] * along[rays[best]], str(reaches[best])
 
     def _room(self, place: np.ndarray, along: np.ndarray) -> np.ndarray:
-        """How far each ray goes inside the box of starts, shape (m,)."""
+        """Return the length of each ray inside the box of starts, shape (m,)."""
         ends = np.where(along > 0.0, self.box[:, 1], self.box[:, 0])
         with np.errstate(divide="ignore", invalid="ignore"):
             room = np.where(along == 0.0, np.inf, (ends - place) / along)
@@ -330,7 +350,7 @@ class _Kicked:
         return starts
 
     def _lost(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Which starts do not reach the motion, and the names of what they reach; starts inside a wall are not lost."""
+        """Return for each start whether it does not reach the motion, and the name of the attractor reached; starts inside a wall do not count as lost."""
         own = self._starts(self.places[:1])
         motions, index, mirrored = self.population.settle(np.concatenate([own, starts]), self.p)
         names = np.array([called(m.word, m.kind) for m in motions], dtype=object)
@@ -339,8 +359,9 @@ class _Kicked:
         return lost[1:], np.where(index == index[0], MIRRORED, names[index])[1:]
 
 
-REACH = 0.5  # of a parameter's size, to either side
-REFUSALS = 12  # of an end of the interval that the machine refuses
+REACH = 0.5  # half-width of the searched interval, relative to the parameter's size
+REFUSALS = 12  # largest number of halvings of an interval whose end the machine does not allow
+# reasons for which a branch ends that are properties of the motion, not of the continuation
 AT_THE_MOTION = {
     Reason.BORDER,
     Reason.LEAVES,
@@ -356,9 +377,7 @@ AT_THE_MOTION = {
 def stable_range(
     problem: Problem, u: np.ndarray, p: float, name: str
 ) -> tuple[tuple[float, float], tuple[bool, bool]]:
-    """Smallest and largest value of the parameter `name` up to which a motion stays stable and real, within half its size.
-
-    For either of them also whether the motion loses its stability or ceases to be real there; False: the search ended there.
+    """Return the interval of a parameter in which a motion stays stable and real, within half the parameter's size of its value.
 
     Parameters
     ----------
@@ -366,7 +385,13 @@ def stable_range(
     u, p
         The motion.
     name : str
-        A parameter of the problem, its own or another.
+        A parameter of the problem: the continuation parameter or another one.
+
+    Returns
+    -------
+    interval : (float, float)
+    lost : (bool, bool)
+        For each end, whether the motion loses its stability or ceases to be real there; False: the search ended there.
 
     Raises
     ------
@@ -393,7 +418,7 @@ def stable_range(
 
 
 def _search_ended(branch: Branch, value: float) -> bool:
-    """Whether a branch ends at a value for a reason that lies in the continuation, not in the motion."""
+    """Whether a branch ends at a value for a reason of the continuation (limits, step size), not of the motion."""
     ends = zip((branch.values[0], branch.values[-1]), branch.endings)
     return not branch.closed and any(
         end == value and ending.reason not in AT_THE_MOTION for end, ending in ends
@@ -401,7 +426,7 @@ def _search_ended(branch: Branch, value: float) -> bool:
 
 
 def _allowed(problem: Problem, name: str, value: float, change: float) -> float:
-    """The value changed, by less where the machine refuses it."""
+    """Return ``value + change``, with `change` halved until the machine allows the value."""
     for _ in range(REFUSALS):
         try:
             problem.check_value(name, value + change)

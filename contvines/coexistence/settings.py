@@ -1,4 +1,4 @@
-"""Tolerances of what coexists: where an atlas looks, starts of maps, basins and their boundaries."""
+"""Tolerances of the search for coexisting motions: atlas, populations of maps, stable manifolds."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class AtlasSettings:
-    """Where an atlas looks. Lengths are parts of the interval.
+    """Tolerances of an atlas; lengths are relative to the interval.
 
     Attributes
     ----------
     narrow : float
-        Stable stretches, windows, and stretches between two changes of what is stable that are narrower are left out, and branches that leave
-        another one so near to a homoclinic orbit.
+        Width below which stable stretches, windows, and stretches between two changes of stability are left out; likewise branches
+        that begin so near to a homoclinic orbit.
     narrow_chain : float
-        Stretches that meet, as those of a cascade, and are narrower together, are not followed past their ends.
+        Width below which a chain of meeting stretches, for example a cascade, is not followed beyond its ends.
     beyond : float
-        So far outside a stable stretch it is asked what the motion becomes.
+        Distance beyond a change of stability at which an atlas simulates.
     farthest : float
-        At most so far past the end of a stable stretch its motion is followed.
+        Largest distance beyond the end of a stable stretch at which its motion is followed.
     aside : float
-        Part of the box of starts by which these are moved off the motion that is followed, for what is symmetric stays so.
+        Distance of starts from the motion that is followed, relative to the box of starts; without it a symmetric motion would stay symmetric.
     inside : float
-        Part by which a start stays inside the box, and a sample's probability between 0 and 1.
+        Smallest distance of a kicked start from the edge of the box, relative to the ray's length; and of a sample's probability from 0 and 1.
     """
 
     narrow: float = 1e-5
@@ -36,18 +36,18 @@ class AtlasSettings:
 
 @dataclass(frozen=True)
 class MapSettings:
-    """How the motions of a map are recognised. Distances are parts of the box of starts.
+    """Tolerances for the motions of a map; distances are relative to the box of starts.
 
     Attributes
     ----------
     returned : float
-        Distance of two points of a cycle that are one; last step of Newton's method.
+        Distance below which an iterate has returned to the first point of a cycle; step below which Newton's method has converged.
     near : float
-        A settled point so near to a solved cycle belongs to it.
+        Distance from a known cycle below which a settled point belongs to it.
     apart : float
-        Places so far apart are looked at on their own when cycles are looked for in chaos.
+        Distance between close returns of a chaotic motion beyond which each is tried as a guess of a cycle.
     far : float
-        A motion has run away.
+        Distance from the box's centre beyond which a motion has escaped.
     """
 
     returned: float = 1e-9
@@ -58,20 +58,21 @@ class MapSettings:
 
 @dataclass(frozen=True)
 class ManifoldSettings:
-    """How stable manifolds are grown. Lengths are parts of the plane's size.
+    """Tolerances for growing stable manifolds; lengths are relative to the plane's size.
 
     Attributes
     ----------
     first : tuple of float
-        Distances of the first point from the saddle; the next one is tried where the images are not where its derivative has them.
+        Distances of the first point from the saddle, tried in this order until the linear prediction of its image is accurate.
     largest, smallest : float
-        Radii of the circles.
+        Limits of the circles' radii.
     corner : float
-        Radius below which the curve may have a corner, as where an impact begins to be missed.
+        Radius below which the curve may have a corner, for example where an impact begins to be missed; also the distance from a wall
+        or the plane's edge at which a curve has reached it.
     on_curve : float
-        Part of a circle's radius: images so near to the curve lie on it.
+        Distance, relative to a circle's radius, below which an image lies on the curve.
     jump : float
-        Part of a circle's radius: where the distance cannot be made smaller, the motion jumps.
+        Distance, relative to a circle's radius: if the nearest image is further from the curve, the map is discontinuous.
     """
 
     first: tuple[float, ...] = (1e-4, 1e-5, 1e-6, 1e-7)

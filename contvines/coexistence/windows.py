@@ -1,4 +1,4 @@
-"""Windows of periodic motion that few or no starts meet, reached from the unstable cycles beside them."""
+"""Narrow windows of periodic motion, which few or no starts meet, reached by continuation from unstable cycles."""
 
 from __future__ import annotations
 
@@ -21,11 +21,13 @@ from .effort import Effort
 from .settings import ATLAS
 
 CYCLES = "searches for unstable cycles"
-MOST = 10_000  # branches traced apart
+MOST = 10_000  # largest number of branches traced in the search for windows
 
 
 class Windows:
-    """Branches traced from unstable cycles, apart from the graph: only what is stable somewhere goes on it, with one generation of what leaves it.
+    """Search for windows: branches of unstable cycles are traced on a separate graph, and those that are stable somewhere are added to the atlas.
+
+    With each added branch, the branches that leave it directly are added, too.
 
     Parameters
     ----------
@@ -33,21 +35,26 @@ class Windows:
         Of the atlas.
     population : Population
     apart : Run
-        On which they are traced; see :func:`run_apart`.
+        The run with the separate graph; see :func:`run_apart`.
     effort : Effort
-        Nothing is begun once it is over.
+        No search begins once its budget is used up.
     """
 
     def __init__(self, run: Run, population: Population, apart: Run, effort: Effort) -> None:
         self.run, self.population, self.apart, self.effort = run, population, apart, effort
-        self.left = 0  # searches that have not begun, or were not completed
+        self.left = 0  # number of searches not begun or not completed
 
     def beside(self, found: Sequence[Counted]) -> None:
-        """Add to the graph the branches that are stable somewhere and hold an unstable cycle of a chaotic motion.
+        """Search from the unstable cycles in chaotic motions.
 
-        A window opens at a fold with a stable and an unstable cycle; the stable one doubles and is lost in chaos, the unstable one
-        lives on in it (E. Ott, Chaos in Dynamical Systems, 2002, on periodic windows). So it leads back, through the fold, into a window that may be too
-        narrow for starts to meet.
+        A window opens at a fold with a stable and an unstable cycle; the stable cycle doubles and ends in chaos, the unstable one
+        persists in it (E. Ott, Chaos in Dynamical Systems, 2002, on periodic windows). Its branch therefore leads back, through the fold,
+        into a window that may be too narrow for starts to meet.
+
+        Parameters
+        ----------
+        found : sequence of Counted
+            Motions; those that are chaotic are used.
         """
         chaotic = [
             (c.state, c.attractor.value)
@@ -64,9 +71,16 @@ class Windows:
             )
 
     def around(self, values: Sequence[float], count: int, seed: int) -> None:
-        """Add to the graph the branches that are stable somewhere and hold a cycle that Newton's method reaches from starts.
+        """Search from the cycles that Newton's method reaches from starts.
 
-        What settles on a narrow or rare motion is hard to meet; the cycles that its branch turns into, unstable ones, reach far beyond.
+        Few starts settle on a motion with a narrow window; the unstable cycles on the same branch exist over a wider interval.
+
+        Parameters
+        ----------
+        values : sequence of float
+            Of the parameter.
+        count, seed : int
+            Number and random seed of the starts at each value.
         """
         population = self.population
         for p in values:
@@ -78,7 +92,7 @@ class Windows:
             )
 
     def _search(self, key: str, p: float, what: str, cycles: Callable[[], Sequence[Solution]]) -> None:
-        """Add to the graph what cycles at a value lead to, unless the work is over."""
+        """Trace the cycles at a value and add the stable branches found to the atlas, unless the budget is used up."""
         if self.effort.over:
             self.left += 1
             return
@@ -86,7 +100,7 @@ class Windows:
         self.run.tell(f"{what} at {where}", p)
 
         def recalled(known: Mapping[str, Any]) -> list[Solution] | None:
-            """None where their problems take functions that are not at hand."""
+            """Return the recorded cycles; None if a problem needs user functions that are not available."""
             found = []
             for k, description in enumerate(known["problems"]):
                 problem = self.population.restored(description, known[f"u{k}"], p)
@@ -111,7 +125,7 @@ class Windows:
                     add_root(self.run, problem, u, at, max(self.run.depth - 1, 0))
 
     def _traced(self, problem: Problem, u: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray, float]]:
-        """Trace a cycle unless it has been; a point of each stable stretch of what is new."""
+        """Trace a cycle on the separate graph, unless known there; return a point of each stable stretch of the new branches."""
         apart, (low, high) = self.apart, self.run.graph.within
         if apart.register.find(problem, u, p) is not None:
             return []
@@ -119,7 +133,7 @@ class Windows:
         try:
             begin(apart, problem, u, p)
             work(apart)
-        except ValueError:  # it is real within rounding only
+        except ValueError:  # the cycle is real only within rounding errors
             return []
         return [
             (branch.attached, branch.points[i], float(branch.values[i]))
@@ -130,13 +144,13 @@ class Windows:
 
 
 def _record(cycles: Sequence[Solution]) -> dict[str, Any]:
-    """What a journal keeps of cycles."""
+    """Return the journal's record of cycles."""
     parts = {f"u{k}": np.asarray(u, dtype=float) for k, (_, u) in enumerate(cycles)}
     return {"problems": [problem.describe() for problem, _ in cycles], **parts}
 
 
 def run_apart(run: Run) -> Run:
-    """A run of its own for branches that are traced apart from the graph of another one."""
+    """Return a run with a separate graph, for branches that another run traces without adding them to its graph."""
     whole = run.graph
     graph = Graph(
         parameter=whole.parameter, model=whole.model, within=whole.within, settings=dict(whole.settings)
@@ -146,7 +160,7 @@ def run_apart(run: Run) -> Run:
 
 
 def _middles(branch: Branch, narrowest: float) -> Iterator[int]:
-    """For every stable stretch that is not narrower the point that is nearest to its middle."""
+    """Yield for every stable stretch, unless narrower than `narrowest`, the index of the point nearest to its middle."""
     for low, high in branch.stable_intervals():
         if high - low < narrowest:
             continue

@@ -1,7 +1,7 @@
-"""One SQLite file per study: a journal that lets a killed run go on, and the finished graph.
+"""Files (.vines): one SQLite database per study, with the journal from which a killed run resumes, and the graph.
 
-The file is written in write-ahead mode, one transaction per journal record. A file that is not ours, is
-damaged, is newer, or belongs to another study is refused with a sentence and left untouched.
+The database is written in write-ahead mode, one transaction per journal record. A file that another program made, that is
+damaged, newer, or belongs to another study raises `StoreError` and is left untouched.
 """
 
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""An open .vines file: the journal of a run and the home of its graph."""
+"""An open .vines file, which stores the journal of a run and its graph."""
 
 from __future__ import annotations
 
@@ -56,16 +56,16 @@ _OBJECTS = "SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, n
 
 
 def _objects_of_ours() -> list[tuple[str, str, str, str | None]]:
-    """Tables and indices of a file of ours, with the text of their definitions."""
+    """Return type, name, table and SQL definition of each table and index of a .vines file."""
     with closing(sqlite3.connect(":memory:")) as db:
         db.executescript(_SCHEMA)
         return db.execute(_OBJECTS).fetchall()
 
 
 class Store:
-    """An open .vines file; the journal of a run and the home of its graph.
+    """An open .vines file, which stores the journal of a run and its graph.
 
-    Use `create`, `open` or `attach`; close it or use it as a context manager.
+    It is a `contvines.journal.Journal`. Make it by `create`, `open` or `attach`; close it or use it as a context manager.
     """
 
     def __init__(
@@ -76,13 +76,21 @@ class Store:
     ):
         self._connection = connection
         self.path = path
-        self._promised = promised  # fingerprint and study of a file that is made with its first entry
+        self._promised = promised  # fingerprint and study of a file that will be made with its first entry
         self._kept: dict[tuple[str, str], tuple[str, dict[str, np.ndarray]]] = {}
         self._version = 0
 
     @classmethod
     def create(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> Store:
-        """Make a new file, whole from the first moment it is visible.
+        """Make a new file; it becomes visible only when it is complete.
+
+        Parameters
+        ----------
+        path : path
+        fingerprint : str
+            Digest of the study; only runs of the same study may use the file.
+        study : mapping, optional
+            The study, JSON-able, to be stored.
 
         Raises
         ------
@@ -98,7 +106,7 @@ class Store:
 
     @classmethod
     def open(cls, path: str | Path, *, write: bool = False) -> Store:
-        """Open an existing file after checking that it is ours, whole and not newer.
+        """Open an existing file after checking that it is an undamaged .vines file of a known format version.
 
         Raises
         ------
@@ -113,12 +121,12 @@ class Store:
 
     @classmethod
     def attach(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> Store:
-        """The file of this study, to write: checked and opened, or made with its first entry where there is none.
+        """Open the file of a study for writing; if there is none, it is made with its first entry. Arguments as for `create`.
 
         Raises
         ------
         StoreError
-            If the file is refused, belongs to another study, or cannot be written.
+            If the file is invalid, belongs to another study, or cannot be written.
         """
         path = Path(path)
         if not path.exists():
@@ -132,11 +140,11 @@ class Store:
 
     @property
     def _db(self) -> sqlite3.Connection:
-        """The connection; a file that is promised is made now."""
+        """The connection; a file that does not exist yet is made now."""
         if self._connection is None:
             if self._promised is None:
                 raise StoreError(f"{self.path}: this file has been closed; open it again.")
-            with suppress(FileExistsError):  # another run of the same study was quicker
+            with suppress(FileExistsError):  # another run of the same study made it first
                 _make(self.path, *self._promised)
             other = Store.attach(self.path, *self._promised)
             self._connection, self._promised = other._connection, None
@@ -161,7 +169,13 @@ class Store:
         return self._meta("fingerprint")
 
     def require(self, fingerprint: str) -> None:
-        """Refuse a file that belongs to another study."""
+        """Check that the file belongs to the study with this fingerprint.
+
+        Raises
+        ------
+        StoreError
+            If it does not.
+        """
         if self.fingerprint != fingerprint:
             raise StoreError(
                 f"{self.path}: this file belongs to another study (or to this one before it was edited) or to another command; "
@@ -170,12 +184,12 @@ class Store:
 
     @property
     def study(self) -> dict[str, Any] | None:
-        """What `create` was told of the study."""
+        """The study given to `create`."""
         return json.loads(self._meta("study"))
 
     @property
     def made(self) -> dict[str, str]:
-        """With what the file was made (`contvines.journal.provenance`); empty for files of versions that did not say so."""
+        """Provenance of the file (`contvines.journal.provenance`); empty for files of early versions."""
         if self._promised is not None:
             return {}
         with self._guard():
@@ -185,7 +199,7 @@ class Store:
 
     @property
     def finished(self) -> bool:
-        """Whether the run that fills the file has ended by itself."""
+        """Whether the run that writes the file has finished."""
         return self._meta("finished") == "true"
 
     @property
@@ -199,26 +213,26 @@ class Store:
     # -- journal -------------------------------------------------------------------------------------------
 
     def recall(self, key: str) -> dict[str, Any] | None:
-        """What was recorded under `key`: arrays and JSON values by name; None if nothing was."""
+        """Return the values recorded under `key`, arrays and JSON values by name; None if there are none."""
         return next((content for _, content in self.entries("journal", key)), None)
 
     def record(self, key: str, values: Mapping[str, Any]) -> None:
-        """Keep arrays and JSON values under `key`, in one transaction."""
+        """Store arrays and JSON values under `key`, in one transaction."""
         with self.transaction():
             self.put("journal", key, values)
 
     def checkpoint(self, graph: Kept) -> None:
-        """Keep the graph as it stands, replacing what was kept of it before, in one transaction.
+        """Store the graph so far, replacing the one stored before, in one transaction.
 
-        One that is unfinished does not replace one that is finished.
+        An unfinished graph does not replace a finished one.
         """
-        # some numbers are worked out when they are asked for: before the write, which nothing may interrupt
+        # some numbers are computed only here: before the transaction, in which interrupts are delayed
         entries = list(graph.entries())
         finished = bool(graph.finished)
         with self.transaction():
             if self.finished and not finished:
                 return
-            # changes when another process has written, which then may have replaced what was kept here
+            # data_version changes when another process has written and may have replaced the entries of this one
             version = self._db.execute("PRAGMA data_version").fetchone()[0]
             if version != self._version:
                 self._kept.clear()
@@ -230,11 +244,11 @@ class Store:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
                 del self._kept[place]
             self._db.execute("UPDATE meta SET value = ? WHERE key = 'finished'", (json.dumps(finished),))
-            if finished and not graph.stopped:  # the journal has done its work
+            if finished and not graph.stopped:  # the journal is not needed any more
                 self._db.execute("DELETE FROM entry WHERE kind = 'journal'")
 
     def _renew(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:
-        """Write an entry of the graph unless it is what was written last (arrays are not changed in place)."""
+        """Write an entry of the graph unless it is unchanged (arrays are never changed in place); return its kind and key."""
         scalars, arrays = split(content)
         known = self._kept.get((kind, key))
         if known is None or known[0] != scalars or not _same_arrays(known[1], arrays):
@@ -243,15 +257,25 @@ class Store:
         return kind, key
 
     def graph(self, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
-        """The graph (or chart) as of the last checkpoint; without `problems`, numbers only (quicker).
+        """Return the graph (or chart) as of the last checkpoint.
 
-        With `trust`, functions that the file names are imported; see :mod:`contvines.problems.registry`.
+        Parameters
+        ----------
+        problems : bool
+            Rebuild the problems of the branches; False: numbers only, which is faster.
+        trust : bool
+            Import the functions that the file names; see :mod:`contvines.problems.registry`.
+
+        Raises
+        ------
+        StoreError
+            If the file holds no valid graph, or its problems cannot be rebuilt.
         """
         from contvines.graph.persistence import OtherEquations, graph_from_entries
 
         entries: dict[str, dict[str, Any]] = {}
         folders = self._folders()
-        for kind, key, content in self._entries("e.kind != 'journal'"):  # as one checkpoint has left them
+        for kind, key, content in self._entries("e.kind != 'journal'"):  # one consistent checkpoint
             known = found_again(printable(content), folders)
             entries.setdefault(printable_text(kind), {})[printable_text(key)] = known
         try:
@@ -263,7 +287,7 @@ class Store:
                 found = graph_from_entries(entries, problems=problems, trust=trust)
             found.origin = {"study": self.study, "made": self.made}
             return found
-        except OSError as error:  # a page that the graph needs
+        except OSError as error:  # a machine file that the graph needs
             raise StoreError(f"{self.path}: {error}.") from None
         except OtherEquations as error:
             raise StoreError(
@@ -277,7 +301,7 @@ class Store:
             ) from None
 
     def _folders(self) -> list[Path]:
-        """Where files lie that were moved together with this one: beside it, or beside its study, whose place is known from here."""
+        """Return the folders to search for machine files that were moved together with this file: its own, and that of its study."""
         here, source = self.path.resolve().parent, (self.study or {}).get("source")
         study = source.get("study") if isinstance(source, dict) else None
         return [here, *([(here / study).resolve().parent] if isinstance(study, str) else [])]
@@ -286,22 +310,22 @@ class Store:
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
-        """All or nothing, whatever ends the process."""
+        """Run the statements inside as one transaction, with interrupts delayed to its end."""
         with HELD, self._guard():
-            if self._db.in_transaction:  # an interrupt has cut one short
+            if self._db.in_transaction:  # left open by an interrupt
                 self._db.execute("ROLLBACK")
             try:
                 self._db.execute("BEGIN IMMEDIATE")
                 yield
                 self._db.execute("COMMIT")
             except BaseException:
-                self._kept.clear()  # what was written last is not sure any more
+                self._kept.clear()  # it is not certain any more which entries are in the file
                 if self._db.in_transaction:
                     self._db.execute("ROLLBACK")
                 raise
 
     def put(self, kind: str, key: str, content: Mapping[str, Any]) -> None:
-        """Write one entry, replacing one of the same kind and key; call inside `transaction`."""
+        """Write one entry, replacing an entry of the same kind and key; call inside `transaction`."""
         scalars, arrays = split(content)
         rows = [(name, *packed(array)) for name, array in sorted(arrays.items())]
         (identity,) = self._db.execute(
@@ -315,15 +339,21 @@ class Store:
     def entries(
         self, kind: str | None = None, key: str | None = None
     ) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Entries as (key, content) in the order in which they were written, digests checked."""
-        # the plus sign: in the order of the table, not of its index
+        """Yield entries as (key, content) in the order in which they were written; digests are checked.
+
+        Parameters
+        ----------
+        kind, key : str, optional
+            Only entries of this kind, or with this key.
+        """
+        # the unary plus keeps SQLite from using the index, so that rows come in the order of the table
         wanted = {"+e.kind = ?" if key is None else "e.kind = ?": kind, "e.key = ?": key}
         wanted = {condition: value for condition, value in wanted.items() if value is not None}
         for _, key_, content in self._entries(" AND ".join(wanted) or "1", *wanted.values()):
             yield key_, content
 
     def _entries(self, condition: str, *values: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
-        """Entries as (kind, key, content), all as they stand at one moment: one statement reads them and their arrays."""
+        """Yield entries as (kind, key, content); one statement reads them with their arrays, so that they are consistent."""
         if self._promised is not None:
             return
         with self._guard():
@@ -353,7 +383,13 @@ class Store:
         return kind, key, content
 
     def _check_whole(self) -> None:
-        """Refuse a file that does not hold our tables and nothing else, before anything else is read of it."""
+        """Check tables, pages, metadata and digests of the whole file; it may have no other tables, indices or triggers than ours.
+
+        Raises
+        ------
+        StoreError
+            If a check fails.
+        """
         with self._guard():
             ours = _objects_of_ours()
             found = self._db.execute(_OBJECTS).fetchmany(len(ours) + 1)
@@ -384,13 +420,13 @@ class Store:
             ) from None
 
     def settle(self) -> None:
-        """Fold the log into the file, so that it stands alone, and give free pages back."""
+        """Merge the write-ahead log into the file, so that it is a single file, and release free pages."""
         with self._guard():
             self._db.execute("PRAGMA journal_mode=DELETE")
             self._db.execute("VACUUM")
 
     def tidy(self) -> None:
-        """`settle`, if nobody else uses the file now and there is room for it."""
+        """Do the same as `settle` if no other process uses the file and the disk has enough space; otherwise nothing."""
         if self._promised is not None:
             return
         with suppress(sqlite3.OperationalError):
@@ -399,7 +435,7 @@ class Store:
                 self._db.execute("VACUUM")
 
     def close(self) -> None:
-        """Close the file; nothing is lost if this is never called."""
+        """Close the file; no data is lost if this is never called."""
         if self._connection is not None:
             self._connection.close()
 
@@ -411,11 +447,12 @@ class Store:
 
 
 def _make(path: Path, fingerprint: str, study: Mapping[str, Any] | None) -> None:
-    """Make a new file, whole from the first moment it is visible.
+    """Make a new file; it becomes visible only when it is complete.
 
     Raises
     ------
     FileExistsError
+        If the path exists.
     StoreError
         If it cannot be written.
     """
@@ -447,12 +484,12 @@ def _make(path: Path, fingerprint: str, study: Mapping[str, Any] | None) -> None
 
 
 def _connected(path: Path, *, write: bool) -> sqlite3.Connection:
-    """A connection that takes SQLite's locks wherever another process may write."""
+    """Return a connection; it uses SQLite's locks unless no other process can write the file."""
     may_write = os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
     tails = [tail for tail in TAILS if path.with_name(path.name + tail).exists()]
     if write or (may_write and ("-journal" in tails or not pending(path))):
-        mode = "mode=rw"  # of a reader, too: it completes a write that was cut short, and leaves nothing beside the file
-    else:  # with the log of a live or killed run, or where nobody may write
+        mode = "mode=rw"  # for readers, too: SQLite then completes an interrupted write, and leaves no files beside the database
+    else:  # there is the log of a live or killed run, or the file is read-only
         mode = "mode=ro" if tails else "immutable=1"
     try:
         db = sqlite3.connect(f"{path.absolute().as_uri()}?{mode}", uri=True, isolation_level=None, timeout=30)

@@ -1,7 +1,7 @@
-"""Differences between two graphs, or two charts, that were made alike: what moved, what is missing, what is new.
+"""Differences between two graphs, or two charts, computed from the same study: moved, missing and new objects.
 
-Values agree to 1e-10 of their size or to the stated location errors. Labels may change only among points of one kind that lie
-nearer than 1e-8 to each other.
+Values must agree to 1e-10 of their size or to the stated location errors. Labels may be exchanged only between points of one kind that
+are less than 1e-8 apart.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ Stretches = list[tuple[float, float]] | None
 
 
 def differences(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
-    """What differs between two results.
+    """Return the differences between two results.
 
     Parameters
     ----------
     before, after : dict
-        Before and after, both from `of_graph`, or both from `of_chart`.
+        The earlier and the later result, both from `of_graph` or both from `of_chart`.
 
     Returns
     -------
     list of str
-        A sentence each; none where they agree.
+        A sentence for each difference; empty if they agree.
     """
     before = _with_names_of_today(before)
     found = list(_points(before["points"], after["points"]))
@@ -52,7 +52,7 @@ def differences(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
 
 
 def _with_names_of_today(before: dict[str, Any]) -> dict[str, Any]:
-    """Borders at which an event vanishes were "chatter", labelled CH, in earlier files."""
+    """Rename kinds and labels of earlier files: borders at which an event vanishes were called "chatter" and labelled CH."""
     points = before["points"]
     labels = {label: f"VE{label[2:]}" for label, point in points.items() if point["kind"] in RENAMED}
     if not labels:
@@ -74,7 +74,10 @@ def _gap(one: dict[str, Any], other: dict[str, Any]) -> float:
 
 
 def _renamed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, str]:
-    """Label in the second result of each point of the first: its own, or that of another point of its kind which is as near as allowed."""
+    """Return the label in the later result of each point of the earlier one.
+
+    It is the point's own label, or that of another point of its kind closer than `Agreement.end`. Missing points are left out.
+    """
     found: dict[str, str] = {}
     for label, point in before.items():
         close = {
@@ -85,7 +88,7 @@ def _renamed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, str]:
             found[label] = label
         elif near:
             found[label] = min(near, key=lambda other: close[other])
-    for label, point in before.items():  # one that moved further
+    for label, point in before.items():  # points that moved further but have the same label and kind
         if (
             label not in found
             and label not in found.values()
@@ -148,7 +151,19 @@ def _entries(
     names: Sequence[str],
     intervals: Mapping[str, str],
 ) -> Iterator[str]:
-    """Curves that are missing, have changed, or are new; `intervals` says of which fields the intervals are compared, and how they are told."""
+    """Yield the differences between curves (branches or loci).
+
+    Parameters
+    ----------
+    before, after : dict
+        Curves by label.
+    called : str
+        Format of a curve's name.
+    names : sequence of str
+        Fields that must be equal.
+    intervals : mapping
+        Field with intervals -> beginning of the sentence about its difference.
+    """
     for label, entry in before.items():
         if label not in after:
             yield f"{called.format(label, **entry)} is missing"
@@ -172,7 +187,7 @@ def _same_intervals(one: Stretches, other: Stretches) -> bool:
 
 
 def of_graph(graph: Graph) -> dict[str, Any]:
-    """Branches, special points and links of a graph, from its documented JSON."""
+    """Return branches, special points and links of a graph for `differences`, from its documented JSON."""
     data = graph.to_dict()
     kept = ("word", "periods", "symmetric", "real", "range", "stable", "closed")
     return {
@@ -197,7 +212,7 @@ def of_graph(graph: Graph) -> dict[str, Any]:
 
 
 def of_chart(chart: Chart) -> dict[str, Any]:
-    """Loci by kind with their ends, and codimension-two points, of a chart's documented JSON."""
+    """Return loci with their ends and codimension-two points of a chart for `differences`, from its documented JSON."""
     data = chart.to_dict()
     return {
         "loci": {
@@ -228,17 +243,17 @@ def _moduli(pairs: list[list[float]]) -> list[float]:
 
 @dataclass(frozen=True)
 class Agreement:
-    """Differences up to which two results agree, relative to 1 + their size.
+    """Tolerances within which two results agree, relative to 1 + the size of the numbers.
 
     Attributes
     ----------
     value : float
-        Of values of special points, if no larger error is stated.
+        For values of special points, unless a larger location error is stated.
     end : float
-        Of the ends of branches, loci and stable stretches, as borders are located from either side; and distance of points of one kind whose
-        labels may change.
+        For the ends of branches, loci and stable stretches (borders are located from either side); also the distance below which
+        points of one kind may exchange labels.
     multiplier : float
-        Of multipliers, which move with the square root of the location error at a fold.
+        For multipliers; at a fold they vary with the square root of the location error.
     """
 
     value: float = 1e-10

@@ -1,4 +1,4 @@
-"""A graph to a file of its own, and back."""
+"""Save graphs and charts to .vines files, load them, and resume interrupted computations."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result", bound=Resumable)
 
-FROM_PYTHON = "saved from Python"  # instead of the name of a run
+FROM_PYTHON = "saved from Python"  # fingerprint of files that no study or run made
 
 
 @hinting
 def save(graph: Graph | Chart, path: str | Path, fingerprint: str | None = None) -> None:
-    """Write a graph to a file of its own; an existing .vines file is replaced in one step.
+    """Write a graph or chart to a .vines file; an existing .vines file is replaced atomically.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def save(graph: Graph | Chart, path: str | Path, fingerprint: str | None = None)
     Raises
     ------
     StoreError
-        If the path holds a file that is not ours (it is left untouched), or cannot be written.
+        If the path is a file of another kind (it is left untouched), or cannot be written.
     """
     path = Path(path)
     if path.exists():
@@ -65,23 +65,28 @@ def resume(path: str | Path, fingerprint: str = ...) -> Store: ...
 
 @hinting
 def resume(path: Resumable | str | Path, fingerprint: str = "run from Python") -> object:
-    """Go on with what was interrupted: `resume(graph)`, or `diagram(..., journal=resume("run.vines"))`.
+    """Resume an interrupted computation: `resume(graph)`, or `diagram(..., journal=resume("run.vines"))`.
 
     Parameters
     ----------
     path : Graph, Chart, Survey or path
-        What an interrupted call has left (the ``graph`` of :class:`contvines.Interrupted`): the work goes on, and the whole result is
-        returned. Or a .vines file, made where there is none: its journal is returned; the same call with the same
-        journal goes on where it stopped.
+        Either the partial result of an interrupted call (the ``graph`` of :class:`contvines.Interrupted`), or a .vines file, which is
+        made if it does not exist.
     fingerprint : str
-        Name of the run of a file; a file of another run is refused.
+        Name of the run that a file belongs to.
+
+    Returns
+    -------
+    Graph, Chart, Survey or Store
+        For a partial result: the complete result, after the computation has continued. For a file: its journal; the same call with
+        this journal continues where it stopped.
 
     Raises
     ------
     ValueError
         If the result was not interrupted in this program.
     StoreError
-        If the file is not ours, is damaged, is newer or belongs to another run.
+        If the file is no .vines file, is damaged or newer, or belongs to another run.
     """
     if isinstance(path, Resumable):
         if path.rest is None:
@@ -95,19 +100,19 @@ def resume(path: Resumable | str | Path, fingerprint: str = "run from Python") -
 
 @hinting
 def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
-    """The graph kept in a .vines file; `graph.finished` says whether its run had ended.
+    """Load the graph or chart from a .vines file; `finished` of the result tells whether its run had ended.
 
-    A file is data: loading one runs nothing that it names.
+    Without `trust`, loading a file executes no code that the file names.
 
     Parameters
     ----------
-    path : path of the file.
+    path : path of the file
     problems : bool
-        Rebuild the problems of the branches, so that orbits and measures can be obtained (else numbers only).
+        Rebuild the problems of the branches, which orbits and measures need; False: numbers only.
     trust : bool
-        Import functions of your own that the file names, those of an :class:`~contvines.AlgebraicProblem` say. Without it
-        they are found only if this program has made a problem from them before. Importing runs code: only for files whose
-        maker you trust.
+        Import user functions that the file names, for example those of an :class:`~contvines.AlgebraicProblem`. Without it they are
+        available only if this program has already made a problem from them. Importing executes code: use it only for files whose
+        author you trust.
 
     Returns
     -------
@@ -116,7 +121,7 @@ def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Gra
     Raises
     ------
     StoreError
-        If the file is not ours, is damaged or is newer.
+        If the file is no .vines file, is damaged or newer.
     """
     check_header(Path(path), reading=True)
     with Store.open(path) as store:

@@ -1,7 +1,8 @@
-"""A .vines file: what it looks like, which files are refused before SQLite touches them, drafts, one run at a time, and its entries as rows.
+"""The format of .vines files: checks before SQLite opens a file, drafts, locks, and the conversion of entries to rows.
 
-Arrays are kept as raw bytes (float64, little-endian, unless they are complex, integer or boolean), numbers as
-JSON text that round-trips exactly; every entry carries a digest of all its parts. Files of Python that entries name are looked for where they lie now.
+Arrays are stored as raw bytes (float64, little-endian, unless they are complex, integer or boolean), numbers as JSON text that
+round-trips exactly; every entry has a digest of all its parts. Python files that entries name may have been moved; they are searched
+for by `found_again`.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ import numpy as np
 
 APPLICATION_ID = 0x56494E45  # "VINE"
 VERSION = 1
-TAILS = ("-wal", "-shm", "-journal")  # of the files that SQLite keeps beside one in use
+TAILS = ("-wal", "-shm", "-journal")  # endings of the files that SQLite has beside a database in use
 MAGIC = b"SQLite format 3\x00"
 DTYPES = {"f": "<f8", "c": "<c16", "b": "|b1", "i": "<i8", "u": "<i8"}
-"""Types of arrays in a file by numpy's letter for the kind."""
+"""Stored type of an array by its numpy kind (``dtype.kind``); other kinds are stored as float64."""
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-"""Characters that a terminal obeys, line ends and tabs apart."""
+"""Control characters that a terminal interprets, without line ends and tabs."""
 
 
 class StoreError(ValueError):
@@ -36,7 +37,19 @@ class StoreError(ValueError):
 
 
 def check_header(path: Path, *, reading: bool = False) -> None:
-    """Refuse what is not ours before SQLite touches it; `reading` if it was to be read, not to be written."""
+    """Check the header of a file before SQLite opens it.
+
+    Parameters
+    ----------
+    path : Path
+    reading : bool
+        Whether the file is to be read, not written: it changes the advice in the message.
+
+    Raises
+    ------
+    StoreError
+        If there is no such file, it is no .vines file, or its format is newer.
+    """
     other = (
         "give one that `contvines diagram` or `trace` has made"
         if reading
@@ -66,7 +79,7 @@ def check_header(path: Path, *, reading: bool = False) -> None:
 
 
 def cut_short(path: Path) -> bool:
-    """Whether a file is shorter than its header says."""
+    """Whether a file is shorter than its header states."""
     with path.open("rb") as file:
         head = file.read(100)
         size = os.fstat(file.fileno()).st_size
@@ -76,7 +89,7 @@ def cut_short(path: Path) -> bool:
 
 
 def damaged(path: Path, why: str) -> StoreError:
-    """The error of a file that is damaged; the logs beside it, which SQLite would take for those of the next file, are named, too."""
+    """Return the error for a damaged file; it also names the logs beside it, which SQLite would apply to a new file of the same name."""
     logs = [path.name + tail for tail in TAILS if path.with_name(path.name + tail).exists()]
     beside = f" and with it {' and '.join(logs)}" if logs else ""
     return StoreError(f"{path}: this file is damaged ({why}); move it away{beside}, and run again.")
@@ -92,12 +105,12 @@ _number = count()
 
 
 def draft_of(path: Path) -> Path:
-    """A name beside a file for its draft."""
+    """Return an unused path for the draft of a file, in the same folder."""
     return path.with_name(f".{path.name}.{os.getpid()}-{next(_number)}.draft")
 
 
 def remove_drafts(path: Path) -> None:
-    """Remove the drafts of a file that killed processes have left."""
+    """Remove the drafts of a file that killed processes have left behind."""
     name = re.compile(rf"\.+{re.escape(path.name)}\.(\d+)-\d+\.draft.*")  # with drafts and logs of their own
     for file in path.parent.iterdir():
         found = name.fullmatch(file.name)
@@ -107,7 +120,7 @@ def remove_drafts(path: Path) -> None:
 
 
 def _alive(process: int) -> bool:
-    if os.name == "nt":  # where signal 0 is not only a question
+    if os.name == "nt":  # on Windows, os.kill with signal 0 would end the process
         return True
     try:
         os.kill(process, 0)
@@ -119,9 +132,14 @@ def _alive(process: int) -> bool:
 
 
 def publish(draft: Path, path: Path) -> None:
-    """Give a whole file its name; fails, rather than clobbers, if someone else was first.
+    """Move a complete draft to its final path.
 
-    The log that a killed run has left, of a file that is gone, must not be taken for that of the new one.
+    Logs at the final path that a killed run has left of a deleted file are removed: SQLite would apply them to the new file.
+
+    Raises
+    ------
+    FileExistsError
+        If the path exists; an existing file is never replaced.
     """
     if path.exists():
         raise FileExistsError
@@ -137,7 +155,7 @@ def publish(draft: Path, path: Path) -> None:
                 raise FileExistsError from None
             os.rename(draft, path)
     except BaseException:
-        for log, aside in orphans:  # they belong to the file of who was first
+        for log, aside in orphans:  # they may belong to the file that another process has made
             _renamed(aside, log)
         raise
     for _, aside in orphans:
@@ -155,10 +173,10 @@ def _renamed(old: Path, new: Path) -> bool:
 
 @contextmanager
 def locked(path: Path, wait: Callable[[], None]) -> Iterator[None]:
-    """Hold the lock of a file.
+    """Hold the lock of a file, as a context manager; wait while another process holds it.
 
-    The lock is a file `.NAME.lock` beside it. The operating system gives the lock back when the process ends, however it ends;
-    the file is removed with the lock, or by the next run. Where no such file can be made, there is no lock.
+    The lock is on a file `.NAME.lock` in the same folder. The operating system releases it when the process ends in any way;
+    the lock file is removed on release, or by the next run. If no lock file can be made, there is no lock.
 
     Parameters
     ----------
@@ -169,7 +187,7 @@ def locked(path: Path, wait: Callable[[], None]) -> Iterator[None]:
     place = path.with_name(f".{path.name}.lock")
     try:
         handle = _taken(place, wait)
-    except OSError:  # nothing can be written here: the run itself says so
+    except OSError:  # nothing can be written here: the run itself will report it
         yield
         return
     try:
@@ -178,13 +196,13 @@ def locked(path: Path, wait: Callable[[], None]) -> Iterator[None]:
         with suppress(OSError):
             place.unlink()
         os.close(handle)
-        if sys.platform == "win32":  # where no open file can be removed
+        if sys.platform == "win32":  # Windows cannot remove an open file
             with suppress(OSError):
                 place.unlink()
 
 
 def _taken(place: Path, wait: Callable[[], None]) -> int:
-    """An open handle of the lock file, with the lock; of the file that still has the name."""
+    """Return an open handle of the lock file, locked; it is certain that the file still has this name."""
     while True:
         handle = os.open(place, os.O_RDWR | os.O_CREAT, 0o666)
         try:
@@ -194,7 +212,7 @@ def _taken(place: Path, wait: Callable[[], None]) -> int:
                 _take(handle)
             if os.path.samestat(os.fstat(handle), os.stat(place)):
                 return handle
-        except FileNotFoundError:  # who had the lock has removed its file meanwhile
+        except FileNotFoundError:  # the process with the lock has removed the lock file meanwhile: try again
             pass
         except BaseException:
             os.close(handle)
@@ -203,7 +221,7 @@ def _taken(place: Path, wait: Callable[[], None]) -> int:
 
 
 def _silent() -> None:
-    """Nothing: it has been said that this run waits."""
+    """Do nothing: `wait` has been called already."""
 
 
 if sys.platform == "win32":
@@ -218,13 +236,13 @@ if sys.platform == "win32":
 
     def _take(handle: int) -> None:
         while True:
-            with suppress(OSError):  # after ten seconds
+            with suppress(OSError):  # raised after ten seconds: try again
                 return msvcrt.locking(handle, msvcrt.LK_LOCK, 1)
 
 else:
     import fcntl
 
-    # locks of the process: copies of it, such as the workers of a survey, do not inherit them
+    # these locks belong to the process: forked copies of it, for example workers of a survey, do not inherit them
     def _try(handle: int) -> bool:
         try:
             fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -237,18 +255,18 @@ else:
 
 
 def set_aside(path: Path, *others: Path) -> Path | None:
-    """Rename a file to `NAME.old.EXT` (or `.old2.`, where that name is taken), and the files that belong to it likewise.
+    """Rename a file to `NAME.old.EXT` (or `.old2.` and so on if that name exists), and the files that belong to it likewise.
 
     Parameters
     ----------
     path : Path
     *others : Path
-        Files in the same folder whose names begin as that of the file does.
+        Files in the same folder whose names begin with the file's stem.
 
     Returns
     -------
     Path or None
-        The new name of the file; None if there was nothing to rename.
+        The new path of the file; None if no file exists.
     """
     files = [file for file in (*others, path) if file.is_file()]
     if not files:
@@ -266,13 +284,13 @@ def set_aside(path: Path, *others: Path) -> Path | None:
 
 
 def split(content: Mapping[str, Any]) -> tuple[str, dict[str, np.ndarray]]:
-    """JSON text of everything but the arrays, and the arrays."""
+    """Split an entry's content into the JSON text of everything but the arrays, and the arrays."""
     arrays = {k: v for k, v in content.items() if isinstance(v, np.ndarray)}
     return json.dumps({k: v for k, v in content.items() if k not in arrays}, default=_plain), arrays
 
 
 def _plain(value: object) -> object:
-    """A value that JSON can hold, for numpy's scalars and foreign mappings."""
+    """Convert numpy scalars and mappings to values that JSON can hold."""
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, Mapping):
@@ -286,12 +304,12 @@ def packed(array: np.ndarray) -> tuple[str, str, bytes]:
 
 
 def unpacked(dtype: str, shape: str, data: bytes) -> np.ndarray:
-    """The array that `packed` took apart.
+    """Return the array of which `packed` made type, shape and bytes.
 
     Raises
     ------
     ValueError
-        If it cannot be one of `packed`.
+        If they do not fit together.
     """
     sizes = json.loads(shape)
     if dtype not in DTYPES.values() or not isinstance(sizes, list) or any(type(n) is not int for n in sizes):
@@ -302,12 +320,12 @@ def unpacked(dtype: str, shape: str, data: bytes) -> np.ndarray:
 
 
 def printable(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Values by name whose texts show control characters (as \\x1b): what a file says is printed on terminals."""
+    """Escape the control characters in all texts of a file's content (as \\x1b), so that it can be printed safely on a terminal."""
     return {printable_text(name): _printable(part) for name, part in content.items()}
 
 
 def printable_text(text: str) -> str:
-    """A text that shows control characters."""
+    """Escape the control characters in a text."""
     return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
@@ -329,16 +347,17 @@ def digest_of(kind: str, key: str, scalars: str, rows: list[tuple[str, str, str,
 
 
 def found_again(content: Mapping[str, Any], folders: Iterable[Path]) -> dict[str, Any]:
-    """Contents of a file, with the places of machine files and of files of equations that are gone replaced by those in which they are found.
+    """Replace the paths of Python files (machine files, files of equations) that no longer exist by paths at which the files are found.
 
-    A file is looked for in some folders by the end of its path: ``machines/press.py``, then the longer ends. Whether its text is the one that
-    was used is judged by whoever runs it.
+    A file is searched for in some folders by the end of its path: the file's name, then with its folder (``machines/press.py``), and so
+    on. The caller must check that the text of the file is the one that was used.
 
     Parameters
     ----------
     content : mapping
+        Of an entry.
     folders : iterable of Path
-        That of the result, and that of its study.
+        The folder of the result, and that of its study.
     """
     places: dict[str, str] = {}
     return {name: _placed(value, list(folders), places) for name, value in content.items()}
