@@ -256,12 +256,13 @@ def _of_file(
         subject(graph, label)
     proofs: dict[str, Any] = {}
     note = f"what is proved is kept in {file}; name the labels that are missing to go on"
-    with Store.open(file, write=True) as store, interruptible(note):
+    with interruptible(note):
         for label in labels or list(graph.special):
             proofs |= prove_labels(graph, [label], bits=bits, **options)
-            with store.transaction():
+            with Store.open(file, write=True) as store, store.transaction():
                 store.put("proof", label, graph.proofs[label])
-        store.tidy()
+        with Store.open(file, write=True) as store:
+            store.tidy()
     return proofs
 
 
