@@ -1,1 +1,1 @@
-"""A declared machine of Python: equations of motion and contacts."""
+"""Declared machines: equations of motion and contacts from a machine file of Python (in the code also called a page)."""

@@ -1,4 +1,4 @@
-"""What the formulas of a declared machine are asked before it becomes a machine; every refusal is a sentence that names the contact and the way out."""
+"""Checks of a declared machine's formulas; every error message names the contact and the remedy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DRAWS = 8  # random states at which formulas are compared
 
 
 class Draws:
-    """Random states, phases and signs, with the given parameters or, with `spread`, with others near them, none of which is zero."""
+    """Random states, phases and signs, together with the machine's own parameters."""
 
     def __init__(self, equations: Equations, params: np.ndarray, spread: bool = False) -> None:
         generator = np.random.default_rng(14)
@@ -46,7 +46,7 @@ class Draws:
         clock: np.ndarray | None = None,
         signs: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Values, shape (DRAWS, count)."""
+        """Return values, shape (DRAWS, count)."""
         numbers = np.hstack([self.params, self.signs if signs is None else signs])
         with np.errstate(all="ignore"):
             return Values(self.equations.layout, list(values))(
@@ -55,7 +55,7 @@ class Draws:
 
 
 def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, int], int | None]:
-    """Walls, frictions and switches against the motion; returns what impacts do to frictions and switches (`Alphabet.flips`)."""
+    """Check walls, frictions and switches against the motion; return the effect of impacts on signs (`Alphabet.flips`)."""
     e, draws, others = equations, Draws(equations, params), Draws(equations, params, spread=True)
     flips: dict[tuple[int, int], int | None] = {}
     _check_periods(draws)
@@ -114,7 +114,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
 
 
 def _check_periods(draws: Draws) -> None:
-    """Whether everything on the page has the period 2 pi in the phase."""
+    """Check that all formulas have the period 2 pi in the phase."""
     e = draws.equations
     if e.phase_rate is None:
         return
@@ -134,7 +134,7 @@ def _check_periods(draws: Draws) -> None:
 
 
 def _check_surfaces(others: Draws, draws: Draws) -> None:
-    """Whether switches switch something, and whether contacts that would always act at once are declared apart."""
+    """Check that switches affect the motion, and that no two contacts always act together."""
     e = draws.equations
     for j, surface in e.surface.items():
         what, name = e.contacts[j].described, e.contacts[j].name
@@ -164,7 +164,7 @@ def _check_surfaces(others: Draws, draws: Draws) -> None:
 
 
 def _proportional(others: Draws, draws: Draws, one: Symbol, other: Symbol) -> bool:
-    """Whether two quantities differ by a constant factor only, for all parameter values; see `_flip`."""
+    """Return whether two quantities differ only by a constant factor."""
     table = others.of([one, other])
     table = table if np.isfinite(table).all() else draws.of([one, other])
     with np.errstate(all="ignore"):
@@ -175,7 +175,7 @@ def _proportional(others: Draws, draws: Draws, one: Symbol, other: Symbol) -> bo
 
 
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
-    """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
+    """Return the switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
     e, draws, others = equations, Draws(equations, params), Draws(equations, params, spread=True)
     found = set()
     for j, surface in e.surface.items():
@@ -189,11 +189,7 @@ def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int
 
 
 def _flip(others: Draws, draws: Draws, wall: int, value: Symbol) -> int | None:
-    """Effect of an impact on the sign of a velocity or surface, for all parameter values.
-
-    0: none; -1, +1: the sign after the impact; None: either sign is possible. A relation that holds for the given values only does not count
-    (with `others` a wall moves whose amplitude is zero); if the formulas have no values at the others, it does.
-    """
+    """Return 0 if the impact does not change the velocity (or surface); -1 or +1, its sign afterwards; None if both signs are possible."""
     e, before, rate, after = draws.equations, np.zeros(0), np.zeros(0), np.zeros(0)
     for one in (others, draws):
         table = one.of([value, e.gap_rate(wall), *e.impact(wall)])
@@ -203,7 +199,7 @@ def _flip(others: Draws, draws: Draws, wall: int, value: Symbol) -> int | None:
     if np.abs(after - before).max() < FORMULAS.same * (1.0 + np.abs(before).max()):
         return 0
     with np.errstate(all="ignore"):
-        ratio = before / rate  # velocity = ratio * rate of the gap, everywhere
+        ratio = before / rate  # constant if velocity = ratio * rate of the gap everywhere
     if np.all(np.isfinite(ratio)) and np.ptp(ratio) < FORMULAS.same * np.abs(ratio).max():
         return 1 if ratio[0] > 0.0 else -1  # after the impact the gap opens
     return None
@@ -216,7 +212,7 @@ def check_names(
     phase_rate: object,
     contacts: Sequence[Any],
 ) -> None:
-    """Names, numbers and letters, before anything is traced."""
+    """Check names, numbers and letters, before any formula is evaluated."""
     if not (isinstance(name, str) and name.isidentifier()):
         raise PageError(
             f"name = {name!r} must be a word of letters, digits and underscores, for example 'stop'"
@@ -305,7 +301,7 @@ def _check_wall(what: str, states: Sequence[str], contact: Wall) -> None:
 
 
 def check_restitution(what: str, value: float) -> None:
-    """Newton's coefficient."""
+    """Check Newton's coefficient."""
     if not 0.0 < value <= 1.0:
         raise PageError(
             f"{what}: restitution = {value:g} is out of range; give a number above 0 and at most 1"
@@ -315,7 +311,7 @@ def check_restitution(what: str, value: float) -> None:
 def check_starts(
     starts: Mapping[str, tuple[float, float]] | None, states: Sequence[str]
 ) -> dict[str, tuple[float, float]]:
-    """Ranges of starts as numbers.
+    """Return ranges of starts as numbers.
 
     Raises
     ------
@@ -339,12 +335,12 @@ def check_starts(
 
 
 def check_response(response: str | None, states: Sequence[str], contacts: Sequence[Any]) -> None:
-    """Refuse a response that orbits or simulations do not tell.
+    """Check the name of the response.
 
     Raises
     ------
     PageError
-        If it is none of the known names.
+        If it is none of the measures that both orbits and simulations have.
     """
     walls = any(isinstance(contact, Wall) for contact in contacts)
     known = [*(f"{kind}_{states[0]}" for kind in OF_A_STATE[:3]), *(["approach_speed"] if walls else [])]
@@ -353,7 +349,7 @@ def check_response(response: str | None, states: Sequence[str], contacts: Sequen
 
 
 def check_energy(e: Equations, params: np.ndarray, wall: int) -> None:
-    """Refuse an energy in which a wall pushes no mass.
+    """Check that a wall's push moves a mass in the energy.
 
     Raises
     ------

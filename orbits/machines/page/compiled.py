@@ -1,4 +1,4 @@
-"""The compiled functions of one declared machine, made when they are first asked for and kept as long as it lives."""
+"""The compiled functions of one declared machine, made at first use and kept as long as the machine exists."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Key = ParamSpec("Key")
 
 
 def once(make: Callable[Concatenate[Compiled, Key], Made]) -> Callable[Concatenate[Compiled, Key], Made]:
-    """A function of `Compiled` that is made when it is first asked for with some arguments."""
+    """Decorator for a method of `Compiled` whose result is made at the first call with the same arguments."""
 
     @wraps(make)
     def kept(self: Compiled, *args: Key.args, **named: Key.kwargs) -> Made:
@@ -33,7 +33,7 @@ def once(make: Callable[Concatenate[Compiled, Key], Made]) -> Callable[Concatena
 
 
 class Compiled:
-    """Flights, guards, events and rates of a machine, by pattern.
+    """Flights, guards, events and rates of a machine, for each pattern.
 
     Parameters
     ----------
@@ -51,48 +51,50 @@ class Compiled:
 
     @once
     def flight(self, key: PatternKey, active: tuple[int, ...]) -> Flight:
-        """The flow with its sensitivities."""
+        """Return the flow with its derivatives."""
         return self.engine.Flight(self.layout, self.equations.pattern(key).clock_rates, active)
 
     @once
     def flights(self, key: PatternKey, active: tuple[int, ...]) -> Flights:
-        """The same, several at once."""
+        """Return the flow with its derivatives, several flights at once."""
         return self.engine.Flights(self.layout, self.equations.pattern(key).clock_rates, active)
 
     @once
     def run(self, key: PatternKey) -> Run:
-        """The flow up to the first guard that falls to zero."""
+        """Return the flow up to the first guard that falls to zero."""
         pattern = self.equations.pattern(key)
         return self.engine.Run(self.layout, pattern.clock_rates, [g.value for g in pattern.guards])
 
     @once
     def watch(self, key: PatternKey) -> Watch:
-        """The flow with every local minimum of every guard."""
+        """Return the flow that reports every local minimum of every guard."""
         pattern = self.equations.pattern(key)
         rises = [pattern.rate(g.value) for g in pattern.guards]
         return self.engine.Watch(self.layout, pattern.clock_rates, rises)
 
     @once
     def extremes(self, key: PatternKey) -> Watch:
-        """The flow with every extreme of every state: rises of the rates are minima, rises of minus the rates maxima."""
+        """Return the flow that reports every extreme of every state: rises of the rates (minima) and of minus the rates (maxima)."""
         rates = self.equations.pattern(key).clock_rates
         return self.engine.Watch(self.layout, rates, [*rates, *(-rate for rate in rates)])
 
     @once
     def rates(self, key: PatternKey) -> Values:
-        """Derivatives of the states by the clock: n values."""
+        """Return the derivatives of the states by the clock: n values."""
         return self._values(*self.equations.pattern(key).clock_rates)
 
     @once
     def guards(self, key: PatternKey) -> Values:
-        """The guards, then their time derivatives."""
+        """Return the guards, then their time derivatives."""
         pattern = self.equations.pattern(key)
         values = [g.value for g in pattern.guards]
         return self._values(*values, *(pattern.rate(v) for v in values))
 
     def event(self, letter: Letter, sign: int, key: PatternKey, active: tuple[int, ...]) -> Values:
-        """The function that is zero at an event, its derivatives by states, clock and active numbers, and at an impact the
-        states after it with theirs, state by state."""
+        """Return the function that is zero at an event, with derivatives by states, clock and active numbers.
+
+        At an impact the states after it follow, each with its derivatives.
+        """
         return self._event(letter.contact, letter.kind, sign if letter.kind == SLIP else 0, key, active)
 
     @once
@@ -103,7 +105,7 @@ class Compiled:
         return self._varied(values, active)
 
     def _varied(self, values: Sequence[Symbol], active: tuple[int, ...]) -> Values:
-        """Values, each with its derivatives by states, clock and active numbers."""
+        """Return values, each with its derivatives by states, clock and active numbers."""
         e = self.equations
         by = [*e.x, e.clock, *(variable(self.layout.numbers[i]) for i in active)]
         table = [[value, *row] for value, row in zip(values, derivatives(values, by))]
@@ -111,7 +113,7 @@ class Compiled:
 
     @once
     def extreme(self, key: PatternKey, active: tuple[int, ...]) -> Values:
-        """The rate of the first state that moves, and its derivatives: zero where a self-excited motion without events is counted from."""
+        """Return the rate of the first state that moves, with derivatives: it is zero at the node of a self-excited motion without events."""
         rates = self.equations.pattern(key).rates
         return self._varied([rates[moving(self.equations, rates)]], active)
 
@@ -131,19 +133,19 @@ class Compiled:
 
     @once
     def contact_values(self) -> Values:
-        """Gaps, velocities and surfaces: one value per contact, in any mode."""
+        """Return gaps, velocities and surfaces: one value per contact, in any mode."""
         e = self.equations
         every = {**e.gap, **e.velocity, **e.surface}
         return self._values(*(every[j] for j in range(len(e.contacts))))
 
     @once
     def limits(self, frictions: tuple[int, ...]) -> Values:
-        """Largest forces of these frictions."""
+        """Return the largest forces of these frictions."""
         return Values(self.layout, [self.equations.limit[j] for j in frictions])
 
     @once
     def impact_map(self, wall: int) -> Values:
-        """The states after an impact, the gap's rate before it, then what the signs of frictions and switches follow after it, contact by contact."""
+        """Return the states after an impact, the gap's rate before it, then velocities and surfaces of `signed` contacts after it."""
         e, after = self.equations, self.equations.impact(wall)
         places = dict(zip(self.layout.states, after))
         signs = [replaced((e.velocity | e.surface)[j], places) for j in e.signed]
@@ -151,56 +153,56 @@ class Compiled:
 
     @once
     def rebound(self, wall: int) -> Values:
-        """The rate of a gap and the wall's restitution."""
+        """Return the rate of a gap and the wall's restitution."""
         e = self.equations
         return self._values(e.gap_rate(wall), e.restitution[wall])
 
     @once
     def loads(self, wall: int) -> Values:
-        """The rate of a gap, the wall's restitution and the mass of the relative motion."""
+        """Return the rate of a gap, the wall's restitution and the mass of the relative motion."""
         e = self.equations
         return self._values(e.gap_rate(wall), e.restitution[wall], e.impact_mass(wall))
 
     @once
     def friction_power(self, key: PatternKey) -> Values:
-        """The power that the frictions take: one value."""
+        """Return the power lost in the frictions: one value."""
         return self._values(self.equations.pattern(key).friction_power())
 
     @once
     def energy(self) -> Values:
-        """The energy of all bodies: one value."""
+        """Return the energy of all bodies: one value."""
         assert self.equations.energy is not None
         return self._values(self.equations.energy)
 
     @once
     def approach(self, wall: int) -> Values:
-        """The rate of a gap, its slopes by the states, and the wall's push."""
+        """Return the rate of a gap, its derivatives by the states, and the wall's push."""
         e, rate = self.equations, self.equations.gap_rate(wall)
         return self._values(rate, *derivatives([rate], e.x)[0], *e.push[wall])
 
     @once
     def gap_slopes(self, wall: int) -> Values:
-        """Derivatives of a gap by the states."""
+        """Return the derivatives of a gap by the states."""
         e = self.equations
         return self._values(*derivatives([e.gap[wall]], e.x)[0])
 
     @once
     def settled(self, wall: int) -> Values:
-        """The states after an impulse that takes the rate of a gap away."""
+        """Return the states after an impulse that reduces the rate of a gap to zero."""
         return self._values(*self.equations.impact(wall, rest=True))
 
     @once
     def gap_acceleration(self, wall: int, key: PatternKey) -> Values:
-        """Second derivative of a free wall's gap: one value."""
+        """Return the second derivative of a free wall's gap: one value."""
         e = self.equations
         return self._values(e.pattern(key).rate(e.gap_rate(wall)))
 
     def numbers(self, params: np.ndarray, modes: Sequence[int]) -> np.ndarray:
-        """The runtime numbers of a mode: parameters, then signs."""
+        """Return the runtime numbers of a mode: parameters, then signs."""
         return np.concatenate([params, self.equations.signs(modes)])
 
 
 def moving(equations: Equations, rates: Sequence[Symbol]) -> int:
-    """The first state whose rate depends on the states."""
+    """Return the first state whose rate depends on the states."""
     names = set(equations.layout.states)
     return next((j for j, rate in enumerate(rates) if variables_of(rate) & names), 0)

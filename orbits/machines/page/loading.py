@@ -1,4 +1,4 @@
-"""Machines from files: a page is run, and the machine that it names is taken."""
+"""Machines from machine files: the file is executed, and the named machine is taken."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from orbits.machines.page.page import digest_of
 
 
 def load_page(path: str | Path, name: str) -> Machine:
-    """Run a page and take the machine that it names.
+    """Execute a machine file and return the machine with a name.
 
-    The page is Python and is run: only call this for a file that the user has named.
+    The file is Python code: only call this for a file that the user has named.
 
     Raises
     ------
     FileNotFoundError, ValueError
-        If there is no such file, it does not run, or has no machine of that name.
+        If the file is missing, fails, or has no machine of that name.
     """
     try:
         module = module_of(path)
@@ -41,11 +41,11 @@ def load_page(path: str | Path, name: str) -> Machine:
 
 
 class PageChanged(OSError):
-    """The file of a stored machine is gone or has changed; the sentence says the way out."""
+    """The file of a stored machine is missing or has changed; the message gives the remedy."""
 
 
 def page_changed(settings: dict[str, Any]) -> str:
-    """A sentence if the page of a stored machine is gone or has changed since; empty if it is as it was."""
+    """Return a sentence if the file of a stored machine is missing or has changed; empty if it is unchanged."""
     path = Path(settings["page"])
     if _comes_along(settings):
         return ""
@@ -64,7 +64,7 @@ def page_changed(settings: dict[str, Any]) -> str:
 
 
 def _comes_along(settings: dict[str, Any]) -> bool:
-    """Whether the machine is one of the package's own: its name says what it is, whatever else its page says now."""
+    """Return whether the machine is one of the package's own, which is identified by its name even if its file has changed."""
     path = Path(settings["page"])
     return settings["object"] in PAGES and path.parts[-3:] == (
         "orbits",
@@ -74,7 +74,7 @@ def _comes_along(settings: dict[str, Any]) -> bool:
 
 
 def loaded(settings: dict[str, Any]) -> Machine | None:
-    """The machine, if its machine file has been run in this process already."""
+    """Return the machine if its file has already been executed in this process."""
     for module in list(sys.modules.values()):
         if getattr(module, "__file__", None) is None:
             continue
@@ -85,12 +85,12 @@ def loaded(settings: dict[str, Any]) -> Machine | None:
 
 
 def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
-    """The machine with these settings: the one that this process has, or, only with `trust`, that of its page; else None.
+    """Return the machine with these settings: the one of this process, or, only with `trust`, that of its file; else None.
 
     Raises
     ------
     PageChanged
-        If the machine file is gone or has changed.
+        If the machine file is missing or has changed.
     """
     machine = loaded(settings)
     if machine is None and _comes_along(settings):

@@ -1,4 +1,4 @@
-"""Machine: a hybrid system in a machine file."""
+"""Machine: a mechanical system with contacts, declared in a machine file."""
 
 from __future__ import annotations
 
@@ -36,35 +36,35 @@ class Machine(Varying):
     name : str
     states : sequence of str
     parameters : mapping of str to float
-        Names and the values they have where none are given.
+        Names and default values.
     motion : callable
-        ``(state, phase, p, contact)`` -> rates of the states, in their order. `state` unpacks and knows its names, `p` has the
-        parameters, `contact` the friction forces and the signs of switches. Functions come from `orbits.symbols`.
+        ``(state, phase, p, contact)`` -> rates of the states, in their order. `state` can be unpacked or used by names, `p` has the
+        parameters, `contact` the friction forces and the signs of switches, as attributes. Functions come from `orbits.symbols`.
     contacts : sequence of Wall, DryFriction, Switch
     phase_rate : str, optional
-        The parameter that is the forcing's frequency: the phase grows by it per unit of time, and the machine has the period
-        2 pi in the phase. Left out: a self-excited machine, whose motions have periods of their own.
+        Name of the forcing frequency: the phase grows by it per unit of time, and the machine has the period
+        2 pi in the phase. Without it the machine is self-excited, and its motions have periods of their own.
     mirror : mapping of str to str, optional
-        The machine equals its mirror image: all states change sign, these contacts change places (those not named stay), half a
-        forcing period on. ``{}``: no contact changes its place. Checked at random states with the parameters' own values; with
-        other values (a slope that is not zero) symmetric orbits and mirror images are looked for only if it holds there, too.
+        Declares that the machine equals its mirror image half a forcing period later: all states change sign, and the named contacts change
+        places (the others stay). ``{}``: no contact changes its place. It is checked at random states with the default parameters; at
+        other values (a slope that is not zero) symmetric orbits and mirror images are used only if it holds there, too.
     starts : mapping of str to (low, high), optional
-        Ranges of the states among which atlases and basins draw their starts; by default twice what the motion from rest reaches.
+        Ranges of the states from which atlases and basins draw their starts; by default twice the reach of the motion from rest.
     units : mapping of str to str, optional
-        Units of parameters and states by name, ``{"gap": "mm", "frequency": "Hz"}``: in them they are given (a text such as "1.2 mm" in any of
-        its kind) and shown. The formulas of the file see SI units; what has no unit here they see as it is.
+        Units of parameters and states by name, ``{"gap": "mm", "frequency": "Hz"}``, in which they are given (a text such as "1.2 mm" in any
+        unit of the kind) and shown. The formulas of the file receive SI units; quantities without a unit here are passed unchanged.
     energy : callable, optional
-        ``(state, phase, p)`` -> kinetic and potential energy of all bodies, in joules: with it impacts have masses, and orbits and transients the
-        measures ``impulse``, ``impact_energy``, ``impact_loss``, ``friction_loss``, ``mean_force``, ``work_rate`` and, where a parameter is called
+        ``(state, phase, p)`` -> kinetic and potential energy of all bodies, in joules. With it impacts have masses, and orbits and transients the
+        measures ``impulse``, ``impact_energy``, ``impact_loss``, ``friction_loss``, ``mean_force``, ``work_rate`` and, if a parameter is called
         ``contact_time`` (in seconds), ``peak_force``.
     response : str, optional
-        The measure that diagrams, sweeps and surveys show: ``max_``, ``min_`` or ``max_abs_`` with the name of the first state, or ``approach_speed`` of the
-        fastest impact, which is the default of a machine with walls.
+        The measure in diagrams, sweeps and surveys: ``max_``, ``min_`` or ``max_abs_`` with the name of the first state, or ``approach_speed``
+        of the fastest impact, which is the default of a machine with walls.
 
     Raises
     ------
     PageError
-        If this declares no machine; the sentence names the contact and the way out.
+        If the declaration is invalid; the message names the contact and the remedy.
     """
 
     flow = "page"
@@ -130,7 +130,7 @@ class Machine(Varying):
         return f"<Machine {self.name}: {', '.join(self.states)}; {kind}; letters {' '.join(self.alphabet.letters)}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Other processes run its page."""
+        """Other processes execute the machine file."""
         name = object_name(self)
         if not name:
             raise ParameterError(
@@ -146,7 +146,7 @@ class Machine(Varying):
 
     @property
     def notation(self) -> dict[str, str]:
-        """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names in the machine file."""
+        """Labels of axes by name of measure; states and parameters keep their names in the machine file."""
         found = {name: SYMBOLS[name] for name in ("phase", *self.load_names) if name in SYMBOLS}
         found |= {f"max_abs_{state}": f"largest |{state}|" for state in self.states}
         if "peak_force" in found:
@@ -165,16 +165,16 @@ class Machine(Varying):
 
     @property
     def load_names(self) -> tuple[str, ...]:
-        """Measures of its contacts' forces and energies."""
+        """Names of the measures of forces and energies at its contacts."""
         return load_names(self.equations, self.parameters)
 
     @cached_property
     def compiled(self) -> Compiled:
-        """Its compiled functions."""
+        """Compiled functions of the machine."""
         return Compiled(self.equations)
 
     def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
-        """The parameter vector, shape (P,), with `values` in place of the machine's own.
+        """Return the parameter vector, shape (P,); `values` replace the machine's own.
 
         Raises
         ------
@@ -187,7 +187,7 @@ class Machine(Varying):
         return params
 
     def _numbers(self, values: Mapping[str, float]) -> np.ndarray:
-        """The parameter vector, each value checked by itself."""
+        """Return the parameter vector, with each value checked by itself."""
         merged = dict(self.parameters)
         for key, value in values.items():
             if key not in merged:
@@ -204,14 +204,14 @@ class Machine(Varying):
         return np.array([merged[key] for key in self.parameter_names])
 
     def phase_speed(self, params: np.ndarray) -> Reals:
-        """How fast the phase grows, in radians per unit of time; of a self-excited machine 1: shapes follow `params` (..., P)."""
+        """Return the rate of the phase, radians per unit of time (self-excited: 1); shape of `params` (..., P) without the last axis."""
         if self.phase_rate is None:
             return 1.0
         speed = params[..., self.parameter_names.index(self.phase_rate)]
         return speed * self.equations.factors.get(self.phase_rate, 1.0)
 
     def sizes(self, params: np.ndarray) -> np.ndarray | None:
-        """Typical sizes of a node's entries, shape (n,), of a forced machine: in small units lengths, and speeds even more, are large numbers."""
+        """Return typical sizes of a node's entries, shape (n,), of a forced machine: in small units lengths and speeds are large numbers."""
         if not self.forced:
             return None
         named = self.named(params)
@@ -219,24 +219,24 @@ class Machine(Varying):
         return None if np.all(found == 1.0) else np.append(1.0, found)
 
     def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter cannot have whatever the others are; see `orbits.machines.page.possible`.
+        """Check a value that may be impossible whatever the other parameters are; see `orbits.machines.page.possible`.
 
         Raises
         ------
         ParameterError
-            Naming the parameter, the value and a way out.
+            If the value is impossible; the message names parameter, value and remedy.
         """
         vector = self._numbers({name: value})
         if wrong := self._possible.wrong(vector, alone=name):
             raise ParameterError(wrong)
 
     def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
-        """Whether the mirror image of every motion is one at these parameters, whatever the value of the one that varies."""
+        """Return whether mirror images of motions are motions at these parameters and at all values of `varying`."""
         place = None if varying is None else self.parameter_names.index(varying)
         return self._image is not None and self._image.holds(params, place)
 
     def absent(self, params: np.ndarray) -> frozenset[int]:
-        """Frictions whose limit is zero at these parameters, at random states: they have no events."""
+        """Return the frictions whose limit is zero at these parameters, at random states: they have no events."""
         frictions = tuple(self.equations.force)
         if not frictions:
             return frozenset()
@@ -246,7 +246,7 @@ class Machine(Varying):
         return frozenset(j for j, column in zip(frictions, values.T) if np.all(column == 0.0))
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
-        """What a file keeps of the machine, ready for JSON: where its machine file is, that file's text and digest, and parameters."""
+        """Return the machine for a file, ready for JSON: path, text and digest of the machine file, and parameters."""
         values = self.parameters if params is None else self.named(params)
         return {"name": self.name, **self.page.describe(self), **values}
 
@@ -258,11 +258,11 @@ class Machine(Varying):
         return Word.over(self.alphabet, text, absent)
 
     def word_of(self, events: Sequence[str], modes: Sequence[Sequence[int]], params: np.ndarray) -> Word:
-        """The word with these events and modes."""
+        """Return the word with these events and modes."""
         return Word(tuple(events), tuple(tuple(mode) for mode in modes), self.alphabet)
 
     def rest_mode(self, params: np.ndarray, state: np.ndarray, clock: float) -> tuple[int, ...]:
-        """Modes that a state suggests: free walls, signs of velocities and surfaces."""
+        """Return the modes that follow from a state: free walls, signs of velocities and surfaces."""
         absent = self.absent(params)
         numbers = np.concatenate([params, np.zeros(len(self.equations.signed))])
         values = self.compiled.contact_values().one(state, clock, numbers) if self.contacts else []
@@ -279,16 +279,16 @@ class Machine(Varying):
         return tuple(modes)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        """Nothing is known in closed form."""
+        """Yield nothing: declared machines have no closed forms."""
         return iter(())
 
     def unshaken(self, params: np.ndarray) -> None:
-        """None: what shakes a declared machine is not known."""
+        """Return None: the strength of the forcing of a declared machine is unknown."""
 
     def random_nodes(
         self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
     ) -> np.ndarray:
-        """Nodes at random, impacts such that they leave their wall."""
+        """Return random nodes, in which impacts leave their wall."""
         n = max(1, len(word))
         nodes = generator.uniform(-1.0, 1.0, (n, self.size + 1))
         if self.forced:
@@ -313,13 +313,13 @@ class Machine(Varying):
     def random_start(
         self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
     ) -> dict[str, float]:
-        """States within +-size and a phase."""
+        """Return random states within +-size, and a random phase."""
         start = {name: float(generator.uniform(-size, size)) for name in self.states}
         return start | ({"phase": float(generator.uniform(0.0, 2.0 * np.pi))} if self.forced else {})
 
     @hinting
     def smooth(self, state: Mapping[str, float] | None = None, **parameters: float):
-        """The motions of a self-excited machine without events, in the mode of a state: its equilibria and cycles as a flow.
+        """Return the motions of a self-excited machine without events, in the mode of a state: its equilibria and cycles as a flow.
 
         ``contvines.diagram(machine.smooth({"x": 0.1}), over=...)`` begins at the equilibrium near the state; see `orbits.flows.page.smooth`.
 

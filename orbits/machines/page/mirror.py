@@ -1,6 +1,6 @@
-"""The mirror image of a declared machine's motions: all states change sign, contacts change places, half a forcing period on.
+"""The mirror image of a declared machine's motions: all states change sign, contacts change places, half a forcing period later.
 
-A machine may have it at some values of its parameters only: a slope of zero, walls that are equally far.
+A machine may have this symmetry only at some values of its parameters: a slope of zero, walls at equal distances.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from orbits.machines.page.patterns import Equations
 from orbits.settings import FORMULAS
 from orbits.symbols import Symbol
 
-VARIED = 0.5  # parts of its own value (of 1, where it is 0) by which a parameter is varied
+VARIED = 0.5  # largest relative change of the varying parameter (absolute, if it is 0)
 
 
 class MirrorImage:
-    """What a page says of the mirror image, checked at the page's own parameters.
+    """The mirror image as the machine file declares it, checked at the file's own parameters.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ class MirrorImage:
     images : dict of int to int
         Contact -> its mirror image.
     turned : frozenset of int
-        Switches whose sign turns.
+        Switches whose sign changes.
 
     Raises
     ------
     PageError
-        If the image is no motion of the machine; the sentence says where and by how much.
+        If the image is no motion of the machine; the message says at which state, and by how much.
     """
 
     def __init__(self, equations: Equations, params: np.ndarray, pairs: Mapping[str, str]) -> None:
@@ -71,7 +71,7 @@ class MirrorImage:
                 )
 
     def holds(self, params: np.ndarray, varying: int | None = None) -> bool:
-        """Whether the machine has the mirror image at these parameters, whatever the value of the one that varies."""
+        """Return whether the machine has the mirror image at these parameters and at all values of the varying one."""
         return self._holds(params.tobytes(), varying)
 
     def _checked(self, values: bytes, varying: int | None) -> bool:
@@ -84,7 +84,7 @@ class MirrorImage:
         return all(self._wrong(a, b) is None for a, b in zip(here.T, there.T))
 
     def _both(self, draws: Draws) -> tuple[np.ndarray, np.ndarray]:
-        """Values of all formulas at random states, and those of their images there, both of shape (DRAWS, count)."""
+        """Return values of all formulas at random states, and values of their images, both of shape (DRAWS, count)."""
         e, signs = self.equations, np.empty_like(draws.signs)
         for place, j in enumerate(e.signed):
             turns = isinstance(e.contacts[j], DryFriction) or j in self.turned
@@ -97,7 +97,7 @@ class MirrorImage:
         return here, there * self._signs
 
     def _turned(self, draws: Draws) -> frozenset[int]:
-        """Switches whose surface is nearer to minus its image."""
+        """Return the switches whose surface is closer to minus its image."""
         e, found = self.equations, set()
         for j, k in self.images.items():
             if not isinstance(e.contacts[j], (Wall, DryFriction)):
@@ -109,14 +109,14 @@ class MirrorImage:
 
     @staticmethod
     def _wrong(here: np.ndarray, there: np.ndarray) -> int | None:
-        """The state at which a formula and its image differ most; None where they agree."""
+        """Return the state at which a formula and its image differ most; None if they agree."""
         gap = np.abs(here - there)
         agree = np.nanmax(gap) <= FORMULAS.same * (1.0 + np.nanmax(np.abs(here)))
         return None if agree else int(np.nanargmax(gap))
 
 
 def _images(equations: Equations, pairs: Mapping[str, str]) -> dict[int, int]:
-    """Contact -> its mirror image, as the page says it."""
+    """Return contact -> its mirror image, as declared."""
     if not isinstance(pairs, Mapping):
         raise PageError(
             f"mirror = {pairs!r} must say which contacts change places, for example {{'L': 'R'}}; {{}} where none does"

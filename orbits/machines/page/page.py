@@ -1,4 +1,4 @@
-"""The page behind a declared machine: its file, its text, and whether it has changed since."""
+"""The machine file (page) behind a declared machine, its text and digest; and the arguments that its functions receive."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class FromPage(Protocol):
-    """What a page has declared."""
+    """A machine declared in a machine file."""
 
     @property
     def page(self) -> Page: ...
@@ -28,12 +28,12 @@ class FromPage(Protocol):
 
 @dataclass(frozen=True)
 class Page:
-    """Where a machine was declared.
+    """The file in which a machine was declared.
 
     Attributes
     ----------
     path : str
-        The file; empty where there is none (typed at a prompt).
+        The file; empty if there is none (typed at a prompt).
     text : str
         The file's text.
     """
@@ -43,26 +43,26 @@ class Page:
 
     @property
     def digest(self) -> str:
-        """Of the text."""
+        """Digest of the text."""
         return digest_of(self.text)
 
     def describe(self, machine: FromPage) -> dict[str, Any]:
-        """Path, object, text and digest, ready for JSON."""
+        """Return path, object, text and digest, ready for JSON."""
         return {"page": self.path, "object": object_name(machine), "source": self.text, "digest": self.digest}
 
 
 def again(path: str, name: str) -> object:
-    """A machine in another process, which runs the page itself."""
+    """Return a machine in another process, which executes the machine file."""
     return getattr(module_of(path), name)
 
 
 def digest_of(text: str) -> str:
-    """A short digest of a declared machine's text."""
+    """Return a short digest of a machine file's text."""
     return hashlib.blake2b(text.encode(), digest_size=12).hexdigest()
 
 
 def page_of(function: Callable) -> Page:
-    """The file in which a function was written."""
+    """Return the file in which a function was written."""
     path = ""
     try:
         path = inspect.getsourcefile(function) or ""
@@ -72,7 +72,7 @@ def page_of(function: Callable) -> Page:
 
 
 def object_name(machine: FromPage) -> str:
-    """The name under which the page's module holds the machine; empty where it does not."""
+    """Return the name of the machine in the module of its file; empty if there is none."""
     for module in list(sys.modules.values()):
         file = getattr(module, "__file__", None)
         if file and _resolved(str(file)) == machine.page.path:
@@ -84,16 +84,16 @@ def object_name(machine: FromPage) -> str:
 
 @cache
 def _resolved(path: str) -> str:
-    """Without links and relative parts; asked of some thousand modules for every problem that is kept."""
+    """Return the path without links and relative parts; cached, because it is needed for some thousand modules at a time."""
     return str(Path(path).resolve())
 
 
 class PageError(ValueError):
-    """A declaration that is no machine; the sentence names the contact or field, what is wrong with it, and the way out."""
+    """An invalid declaration of a machine; the message names the contact or field, the fault and the remedy."""
 
 
 class States(Sequence["Plain"]):
-    """The states as a page sees them: a sequence that also knows their names."""
+    """The states as the functions of a machine file receive them: a sequence with named attributes."""
 
     def __init__(self, names: Sequence[str], values: Sequence[Plain]) -> None:
         self._values = tuple(values)
@@ -115,7 +115,7 @@ class States(Sequence["Plain"]):
 
 
 class Named:
-    """Parameters, or contact forces and signs, by name; an unknown one is refused with a sentence."""
+    """Parameters, or contact forces and signs, as attributes; an unknown name raises PageError."""
 
     def __init__(self, what: str, values: Mapping[str, Plain]) -> None:
         self._what = what
@@ -130,7 +130,7 @@ class Named:
 
 
 class NoPhase:
-    """Stands for the phase of a self-excited machine, which has none."""
+    """Placeholder for the phase of a self-excited machine; its use raises PageError."""
 
     def _refuse(self, *_: object) -> NoReturn:
         raise PageError(

@@ -1,12 +1,13 @@
-"""The formulas of a declared machine: what its page says, in every mode.
+"""The formulas of a declared machine as symbols, in every mode.
 
-The page is run once with symbols. A *pattern* says which frictions stick and which walls hold; in each the unknown contact forces
-follow from what they keep at rest, and the signs of sliding frictions and of switches stay numbers, so that one compiled flow
-serves all of them.
+The functions of the machine file are called once with symbols. A *pattern* is a set of frictions that stick and walls that hold. In each
+pattern the unknown contact forces follow from the velocities and gaps that they keep at zero. The signs of sliding frictions and of
+switches remain numbers, so that one compiled flow serves all of them.
 
 With the energy E, quadratic in the speeds, and a contact whose unit of force changes the states at the rates d, the force is conjugate to the
-contact's speed s: the mass of the relative motion is m = (d . H d) / (ds/dx . d)^2 with the Hessian H of E, an impulse of J newton seconds changes s
-by J/m, and a unit of the contact's own force is (d . H d) / (ds/dx . d) newton. Work of what moves a wall or a belt is not counted.
+contact's speed s: the mass of the relative motion is m = (d . H d) / (ds/dx . d)^2 with the Hessian H of E, an impulse of J newton seconds
+changes s by J/m, and a unit of the contact's own force is (d . H d) / (ds/dx . d) newton. Work of the drive of a moving wall or belt is not
+counted.
 
 Independent variable (`clock`) of every compiled flow: the forcing phase (radians) of a forced machine, time of a self-excited one.
 """
@@ -39,9 +40,9 @@ PatternKey = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
 
 @dataclass(frozen=True)
 class Guard:
-    """A quantity of one contact that stays positive in a mode, and the event that happens where it falls to zero.
+    """A quantity of one contact that stays positive in a mode, and the event at which it falls to zero.
 
-    `sign` is that of the velocity after a slip.
+    `sign` is the sign of the velocity after a slip.
     """
 
     contact: int
@@ -58,8 +59,8 @@ class Pattern:
     rates : list of Symbol
         Time derivatives of the states.
     forces, mobility : dict of int to Symbol
-        Force of each friction and each held wall, by the contact's index; for those that are solved for also the acceleration
-        that a unit of it gives while the others keep what they keep.
+        Force of each friction and each held wall, by the contact's index; and, for unknown forces, the acceleration
+        by a unit of the force while the other unknown forces keep their conditions.
     """
 
     def __init__(
@@ -83,7 +84,7 @@ class Pattern:
         self.rates: list[Symbol] = rates
 
     def rate(self, value: Symbol) -> Symbol:
-        """Time derivative of a quantity along this flow."""
+        """Return the time derivative of a quantity along this flow."""
         return self.equations.along(value, self.rates)
 
     @cached_property
@@ -93,7 +94,7 @@ class Pattern:
         return self.rates if omega is None else [rate / omega for rate in self.rates]
 
     def friction_power(self) -> Symbol:
-        """Power that the frictions take, where the machine tells its energy."""
+        """Return the power lost in the frictions, if the machine declares its energy."""
         e, total = self.equations, constant(0.0)
         for j, force in e.force.items():
             if j in self.stuck or j in self.absent:
@@ -105,7 +106,7 @@ class Pattern:
 
     @cached_property
     def guards(self) -> list[Guard]:
-        """What stays positive in this pattern, contact by contact."""
+        """Guards of this pattern, contact by contact."""
         e, found = self.equations, []
         for j, contact in enumerate(e.contacts):
             if isinstance(contact, Wall):
@@ -114,7 +115,9 @@ class Pattern:
                 else:
                     found.append(Guard(j, HIT, e.gap[j]))
             elif isinstance(contact, Switch):
-                if not any(e.flips.get((wall, j)) for wall in self.held):  # the wall keeps it at zero
+                if not any(
+                    e.flips.get((wall, j)) for wall in self.held
+                ):  # otherwise the wall keeps it at zero
                     found.append(Guard(j, SWITCH, e.sign[j] * e.surface[j]))
             elif j in self.stuck:
                 for sign in (1, -1):
@@ -126,7 +129,7 @@ class Pattern:
 
 
 class Equations:
-    """What a page says, as symbols.
+    """The formulas of a machine file, as symbols.
 
     Attributes
     ----------
@@ -138,9 +141,9 @@ class Equations:
         Of the walls; the frictions; the switches.
     phase_rate : Symbol or None
     formulas_of_motion : callable
-        As the page gives it.
+        `motion` of the machine file.
     factors : mapping of str to float
-        What one of a parameter or state is in SI units: the formulas of a declared machine see SI units, all else the units that are shown.
+        Unit of a parameter or state in SI units: formulas of the machine file receive SI units, all other code uses the shown units.
     energy : Symbol or None
         Of all bodies, in joules.
     force : dict of int to Symbol
@@ -148,7 +151,7 @@ class Equations:
     without_forces : dict of str to float
         Names of these unknowns, each with 0.
     flips : dict of (wall, contact) to int or None
-        What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
+        Effect of impacts on the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
     """
 
     def __init__(
@@ -203,7 +206,7 @@ class Equations:
 
     @cached_property
     def rates(self) -> list[Symbol]:
-        """Rates of the states, the friction forces unknown."""
+        """Rates of the states with unknown friction forces."""
         return self.motion_with(self.force)
 
     @cached_property
@@ -213,11 +216,11 @@ class Equations:
 
     # ------------------------------------------------------------------ reading the page
     def value(self, function: object, what: str) -> Symbol:
-        """A function of (state, phase, p), as a symbol."""
+        """Return a function of (state, phase, p) as a symbol."""
         return self._symbol(called(what, function, self.state, self.phase, self.p), what)
 
     def quantity(self, given: object, what: str) -> Symbol:
-        """A number, the name of a parameter, or a function of (state, phase, p)."""
+        """Return a number, the parameter of a name, or a function of (state, phase, p), as a symbol."""
         if isinstance(given, str):
             try:
                 return getattr(self.p, given)
@@ -234,7 +237,7 @@ class Equations:
         raise PageError(f"{what} is {value!r}; it must be one formula or number")
 
     def motion_with(self, forces: Mapping[int, Symbol]) -> list[Symbol]:
-        """Rates of the states with these friction forces; switches have their signs."""
+        """Return the rates of the states with these friction forces; switches have their signs."""
         given = {}
         for j, contact in enumerate(self.contacts):
             if isinstance(contact, DryFriction):
@@ -257,11 +260,11 @@ class Equations:
         return [rate / self.factors.get(name, 1.0) for rate, name in zip(told, self.states)]
 
     def _in_si(self, name: str, shown: Symbol) -> Symbol:
-        """A parameter or state as the formulas see it."""
+        """Return a parameter or state as the formulas receive it."""
         return shown * self.factors.get(name, 1.0)
 
     def formulas(self) -> Iterator[tuple[str, str, int, Mapping[int, Symbol]]]:
-        """What the page says of each contact: in words, what it is, the contact, and those of all contacts of the kind."""
+        """Yield the formulas of each contact: description, kind of formula, contact, and this kind's formulas of all contacts."""
         kinds = ("gap", "restitution", "velocity", "limit", "surface")
         for j, contact in enumerate(self.contacts):
             for what in kinds:
@@ -270,7 +273,7 @@ class Equations:
 
     # ------------------------------------------------------------------ derivatives
     def along(self, value: Symbol, rates: Sequence[Symbol]) -> Symbol:
-        """Time derivative of a quantity along a flow."""
+        """Return the time derivative of a quantity along a flow."""
         by = self.x if self.phase_rate is None else [*self.x, self.clock]
         (slopes,) = derivatives([value], by)
         total = slopes[0] * rates[0]
@@ -279,7 +282,7 @@ class Equations:
         return total if self.phase_rate is None else total + slopes[-1] * self.phase_rate
 
     def toward(self, value: Symbol, direction: Sequence[Symbol]) -> Symbol:
-        """Derivative of a quantity in a direction of the states."""
+        """Return the derivative of a quantity in a direction of the states."""
         (slopes,) = derivatives([value], self.x)
         total = constant(0.0)
         for slope, part in zip(slopes, direction):
@@ -287,17 +290,17 @@ class Equations:
         return total
 
     def curvature(self, direction: Sequence[Symbol]) -> Symbol:
-        """d . H d, with the Hessian H of the energy."""
+        """Return d . H d, with the Hessian H of the energy."""
         assert self.energy is not None
         return self.toward(self.toward(self.energy, direction), direction)
 
     def impact_mass(self, j: int) -> Symbol:
-        """Mass of the relative motion at wall j."""
+        """Return the mass of the relative motion at wall j."""
         turned = self.toward(self.gap_rate(j), self.push[j])
         return self.curvature(self.push[j]) / (turned * turned)
 
     def body_masses(self) -> dict[str, Symbol]:
-        """Speeds that a wall or a friction changes, by name, and the mass that moves with each; none without an energy."""
+        """Return, by name, speeds that a wall or a friction changes, with the mass that moves with each; empty without an energy."""
         found = {}
         for k, name in enumerate(self.states if self.energy is not None else ()):
             moved = self.without_forces.keys() & variables_of(self.rates[k])
@@ -307,40 +310,40 @@ class Equations:
         return found
 
     def friction_effect(self, j: int) -> Symbol:
-        """What a unit of friction j adds to the rate of its velocity."""
+        """Return the contribution of a unit of friction j to the rate of its velocity."""
         (effect,) = derivatives([self.along(self.velocity[j], self.rates)], [self.force[j]])
         return effect[0]
 
     def gap_rate(self, j: int) -> Symbol:
-        """Rate of a wall's gap: contact forces do not enter it (`checks` sees to that)."""
+        """Return the rate of a wall's gap; contact forces do not enter it (`checks` tests this)."""
         return self.along(self.gap[j], self.still)
 
     def impact(self, j: int, rest: bool = False) -> list[Symbol]:
-        """The states after an impact on wall j: x + I d, with the impulse I that turns the gap's rate g into -e g (`rest`: into 0)."""
+        """Return the states after an impact on wall j: x + I d, with the impulse I that turns the gap's rate g into -e g (`rest`: into 0)."""
         impulse = self._impulse(j, rest)
         return [x + impulse * push for x, push in zip(self.x, self.push[j])]
 
     def deciding(self, j: int) -> frozenset[str]:
-        """Names of what decides when an impact on wall j happens, and what it does."""
+        """Return the names of the variables on which time and effect of an impact on wall j depend."""
         if j not in self._deciding:
             deciders = (self.gap[j], self._impulse(j, False), *self.push[j])
             self._deciding[j] = frozenset().union(*map(variables_of, deciders))
         return self._deciding[j]
 
     def _impulse(self, j: int, rest: bool) -> Symbol:
-        """g(x + I d) = g(x) + I (dg/dx . d), so I = -(1 + e) g / (dg/dx . d)."""
+        """Return I = -(1 + e) g / (dg/dx . d), from g(x + I d) = g(x) + I (dg/dx . d)."""
         rate = self.gap_rate(j)
         effect = self.toward(rate, self.push[j])
         return -rate / effect if rest else -(1.0 + self.restitution[j]) * rate / effect
 
     def pattern(self, key: PatternKey) -> Pattern:
-        """The flow while these frictions stick, these walls hold and these frictions are absent."""
+        """Return the flow while these frictions stick, these walls hold and these frictions are absent."""
         if key not in self._patterns:
             self._patterns[key] = Pattern(self, *key)
         return self._patterns[key]
 
     def pattern_key(self, modes: Sequence[int]) -> PatternKey:
-        """Which frictions stick, which walls hold, which frictions are absent in a mode (one entry per contact)."""
+        """Return the sticking frictions, holding walls and absent frictions of a mode (one entry per contact)."""
         kinds = list(enumerate(zip(self.contacts, modes)))
         friction = [(j, modes[j]) for j in self.velocity]
         return (
@@ -350,16 +353,16 @@ class Equations:
         )
 
     def signs(self, modes: Sequence[int]) -> list[float]:
-        """The runtime signs in a mode: 0 for a friction that sticks or is absent."""
+        """Return the runtime signs in a mode: 0 for a friction that sticks or is absent."""
         return [float(modes[j]) if modes[j] in (-1, 1) else 0.0 for j in self.signed]
 
 
 def _solved(
     conditions: Sequence[Symbol], unknown: Mapping[int, Symbol]
 ) -> tuple[dict[int, Symbol], dict[int, Symbol]]:
-    """Solve conditions that are affine in the unknown forces, and say what a unit of each gives.
+    """Solve conditions that are affine in the unknown forces; return the forces, and the mobility of each.
 
-    Cramer's rule by expansion: there are few at a time.
+    Cramer's rule by expansion, because there are only few at a time.
     """
     if not unknown:
         return {}, {}

@@ -1,7 +1,8 @@
-"""Where the formulas of a machine file are no machine: values of parameters that none can have (walls that overlap, masses and restitutions that are none,
-friction that pushes, divisions by zero), and states at which a formula is no number, with the line of the file.
+"""Impossible parameter values of a declared machine, and states at which its formulas are undefined.
 
-What a machine file says is asked at random states; a value is impossible where the answer is the same at all of them.
+Impossible are walls that overlap, masses that are not positive, restitutions out of range, friction that accelerates, divisions by zero. The
+formulas are evaluated at random states; a value is impossible if the demand fails at all of them. For an undefined formula the line of the
+machine file is given.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ from orbits.machines.page.si import CONTACT
 from orbits.settings import FORMULAS
 from orbits.symbols import Symbol
 
-SHOWN = 4  # parameters that a sentence names
+SHOWN = 4  # largest number of parameters named in a sentence
 
 
 @dataclass(frozen=True)
 class Demand:
-    """A formula of the machine, and which of its values are possible.
+    """A formula of the machine, and the condition for its values.
 
     Attributes
     ----------
@@ -39,7 +40,7 @@ class Demand:
     holds : callable
         Values at random states -> bool array: which are possible.
     rule : str
-        The same in words, behind "is out of range: ".
+        The condition in words, to follow "is out of range: ".
     """
 
     value: Symbol
@@ -48,18 +49,18 @@ class Demand:
 
     @property
     def parameters(self) -> frozenset[str]:
-        """Names of the parameters on which it depends."""
+        """Names of the parameters on which the formula depends."""
         return frozenset(n.removeprefix("p_") for n in variables_of(self.value) if n.startswith("p_"))
 
 
 class Possible:
-    """What the parameters of a machine must satisfy.
+    """The conditions that the parameters of a machine must satisfy.
 
     Parameters
     ----------
     equations : Equations
     units : mapping of str to str
-        Of the parameters, by name.
+        Units of the parameters, by name.
     """
 
     def __init__(self, equations: Equations, units: Mapping[str, str]) -> None:
@@ -74,16 +75,16 @@ class Possible:
         if CONTACT in self.names:
             self.demands.append(Demand(variable(f"p_{CONTACT}"), _open, "an impact lasts longer than 0"))
         self._asked: dict[str | None, tuple[list[Demand], Values]] = {}
-        self._passed = b""  # values that were asked last, and are possible
+        self._passed = b""  # the last parameter vector that was tested and is possible
 
     def wrong(self, params: np.ndarray, alone: str | None = None) -> str:
-        """A sentence on the first demand that is not met; empty if all are.
+        """Return a sentence on the first demand that is not met; empty if all are.
 
         Parameters
         ----------
         params : float array (P,)
         alone : str, optional
-            Only what depends on this parameter and no other.
+            Test only demands that depend on this parameter alone.
         """
         if alone is None and params.tobytes() == self._passed:
             return ""
@@ -104,7 +105,7 @@ class Possible:
         return ""
 
     def _sentence(self, demand: Demand, values: Mapping[str, float]) -> str:
-        """Which values are to blame: those not above zero, else all on which the formula depends."""
+        """Return the sentence on a demand; it names the parameters that are not above zero, or else all that enter the formula."""
         known = [name for name in self.names if name in demand.parameters]
         blamed = ([name for name in known if values[name] <= 0.0] or known)[:SHOWN]
         told = ", ".join(f"{name} = {values[name]:g} {self.units.get(name, '')}".rstrip() for name in blamed)
@@ -114,7 +115,7 @@ class Possible:
 
 
 def _rooms(e: Equations, units: Mapping[str, str]) -> list[Demand]:
-    """Two walls that face one another, as those of a cavity: a weighted sum of their gaps is the room between them, wherever the bodies are."""
+    """Return demands on two facing walls: a weighted sum of their gaps is the space between them, wherever the bodies are."""
     slopes: dict[int, list[float]] = {}
     for j, gap in e.gap.items():
         row = derivatives([gap], e.x)[0]
@@ -133,7 +134,7 @@ def _rooms(e: Equations, units: Mapping[str, str]) -> list[Demand]:
 
 
 def _way_out(room: Symbol, units: Mapping[str, str]) -> str:
-    """Where the room is a multiple of one parameter and a constant: from which value on there is some."""
+    """Return, if the space depends linearly on one parameter, the value from which there is some."""
     names = [name for name in variables_of(room) if name.startswith("p_")]
     if len(names) == 1:
         slope, rest = (
@@ -148,7 +149,7 @@ def _way_out(room: Symbol, units: Mapping[str, str]) -> str:
 
 
 def _masses(e: Equations) -> list[Demand]:
-    """Of the bodies that meet at walls or rub, where the machine tells its energy."""
+    """Return demands on the masses of bodies that hit walls or rub, if the machine declares its energy."""
     return [
         Demand(mass, _open, f"the mass that moves with {name} is above 0")
         for name, mass in e.body_masses().items()
@@ -187,7 +188,7 @@ FAILS = {"divide": "a division by zero", "invalid": "no number"}
 def singular_at(
     equations: Equations, params: np.ndarray, modes: Sequence[int], state: np.ndarray, clock: float
 ) -> str:
-    """A sentence's part: the formula that is no number at a state or has no slopes there, and the state; empty if all are fine."""
+    """Return a formula that is undefined or not differentiable at a state, with the state, as part of a sentence; empty if there is none."""
     if not np.abs(state).max() < FORMULAS.runaway:
         return ""
     at = ", ".join(f"{name} = {value:.6g}" for name, value in zip(equations.states, state))
@@ -210,7 +211,7 @@ def singular_at(
 def _on_numbers(
     e: Equations, params: np.ndarray, modes: Sequence[int], state: np.ndarray, clock: float
 ) -> Iterator[tuple[str, Callable]]:
-    """What each formula of the page is, and its call with numbers in place of symbols."""
+    """Yield the description of each formula of the machine file, and its call with numbers in place of symbols."""
     names = [name.removeprefix("p_") for name in e.layout.numbers[: len(params)]]
     si = e.factors
     p = Named("p", {name: np.float64(value) * si.get(name, 1.0) for name, value in zip(names, params)})
@@ -251,7 +252,7 @@ def _named(error: Exception) -> str:
 
 
 def _line(error: Exception) -> str:
-    """The last line of the page that was being worked out, as far as its text is known."""
+    """Return the last line of the machine file that was being evaluated, if its text is known."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith(HERE)]
     if not frames or frames[-1].lineno is None:
         return ""

@@ -1,4 +1,4 @@
-"""A forced machine whose frequency rises linearly: its phase becomes a function of time, and time one of its states."""
+"""A forced machine whose frequency changes linearly: its phase becomes a function of time, and time one of its states."""
 
 from __future__ import annotations
 
@@ -16,25 +16,26 @@ if TYPE_CHECKING:
     from orbits.symbols import Symbol
 
 CLOCK = "run_up_time"
-"""The further state, in seconds where the page has units."""
+"""Name of the additional state: time, in seconds if the machine has units."""
 
 
 def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> Machine:
-    """The machine while its frequency goes from `begin` to its own, phi'' constant; self-excited, as the clock is one of its states.
+    """Return the machine while its frequency goes from `begin` to its own value, with phi'' constant; it is self-excited, with time as a state.
 
     Parameters
     ----------
     machine : Machine
-        A forced one.
+        A forced machine.
     params : float array (P,)
     begin : float
-        The frequency at the start, counted as the machine's own.
+        The frequency at the start, in the unit of the machine's own.
     time : float
+        Duration of the run-up.
 
     Raises
     ------
     PageError
-        If the machine is not forced, or the time or frequency cannot be.
+        If the machine is not forced, or time or frequency are impossible.
     """
     name = machine.phase_rate
     if name is None:
@@ -48,7 +49,7 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
     count = len(machine.states)
 
     def wrapped(function: Callable) -> Callable:
-        """A function of the page, with phase and frequency at the time that the state has."""
+        """Return a function of the machine file with phase and frequency at the time in the state."""
         if not callable(function):
             return function
 
@@ -75,7 +76,7 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
 
 
 def _contact(contact: Contact, wrapped: Callable) -> Contact:
-    """The same contact with its functions wrapped, those of a push among them."""
+    """Return the same contact with its functions wrapped, including those of a push."""
     parts = {part.name: getattr(contact, part.name) for part in fields(contact)}
     return replace(
         contact,
@@ -89,7 +90,7 @@ def _contact(contact: Contact, wrapped: Callable) -> Contact:
 
 
 def phase_at_end(machine: Machine, params: np.ndarray, begin: float, time: float) -> float:
-    """The phase at the end of a run-up: the mean frequency times the time."""
+    """Return the phase at the end of a run-up: the mean frequency times the time."""
     assert machine.phase_rate is not None
     first = begin * machine.equations.factors.get(machine.phase_rate, 1.0)
     return 0.5 * (first + float(machine.phase_speed(params))) * time

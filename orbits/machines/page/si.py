@@ -1,4 +1,4 @@
-"""Units in a machine file, in which numbers are given and shown (the page's formulas see SI units), and the measures that have them."""
+"""Units of a machine file, in which numbers are given and shown (its formulas receive SI units), and measures that need them."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from orbits.symbols import Symbol
 
 OF_A_STATE = ("max", "min", "max_abs", "first", "strobe")
-"""Measures that are values of a state; the last one only of forced machines."""
+"""Measures of single states; the last one only for forced machines."""
 CONTACT = "contact_time"
-"""Name of the parameter that is the duration of an impact, in seconds; it moves nothing."""
+"""Name of the parameter for the duration of an impact, in seconds; the motion does not depend on it."""
 OF_LOADS = {
     "impact_rate": "Hz", "impulse": "N s", "impact_energy": "J", "impact_loss": "J", "friction_loss": "J", "mean_force": "N",
     "work_rate": "W", "peak_force": "N",
 }  # fmt: skip
-"""Units of measures of contacts; that of ``impulse_R`` is that of ``impulse``."""
-LONGEST = 50.0  # typical sizes of a state
+"""Units of measures of contacts; ``impulse_R`` has that of ``impulse``."""
+LONGEST = 50.0  # largest length among the parameters, over the typical size of a state
 
 
 Given = TypeVar("Given")
 
 
 class Units:
-    """Units by name of parameter or state; the clock is SI, a forcing's frequency in hertz counts turns.
+    """Units by name of parameter or state; the clock is in SI units, and a forcing frequency in hertz counts turns.
 
     Raises
     ------
@@ -67,13 +67,13 @@ class Units:
                 self.factors[name] = turns
 
     def number(self, name: str, value: Given | str) -> Given | float:
-        """A value, such as "1.2 mm", counted in the unit of its name; what is no text is a number in that unit already."""
+        """Return a value, such as "1.2 mm", in the unit of its name; a number is already in that unit."""
         return counted(name, value, self.said.get(name, "")) if isinstance(value, str) else value
 
     def sizes(self, states: Sequence[str], parameters: Mapping[str, float], rate: float) -> np.ndarray:
-        """Typical size of each state in its unit, at least 1; 1 of states that are neither lengths nor speeds.
+        """Return the typical size of each state in its unit, at least 1; 1 for states that are neither lengths nor speeds.
 
-        No parameter is a length of more than `LONGEST` sizes, and a speed is that of passing a size at a rate (radians a second).
+        No parameter is a length of more than `LONGEST` typical lengths. A typical speed is a typical length times the rate (radians per second).
         """
         unit = {name: size(said, "m") for name, said in self.said.items()}
         own = [unit[name] for name in states if unit.get(name)]
@@ -91,7 +91,7 @@ class Units:
         return found
 
     def check(self, e: Equations) -> None:
-        """Refuse units of another kind than their neighbours: in a distance or a velocity that adds them, and of a state whose rate is another state.
+        """Check that units match: in gaps and velocities that add quantities, and for states whose rate is another state.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Units:
                     )
 
     def shown(self, states: Sequence[str]) -> dict[str, str]:
-        """Units of parameters, states and measures by name."""
+        """Return units of parameters, states and measures by name."""
         if not self.said:
             return {}
         of_states = {
@@ -128,7 +128,7 @@ class Units:
 
 
 def _terms(value: Symbol) -> list[str]:
-    """The variables that a sum adds, each with a number before it; what else it adds is ""."""
+    """Return the variables in a sum, each with a numeric factor; "" for any other term."""
     if value.operation in "+-":
         return [term for part in value.operands for term in _terms(part)]
     while value.operation in "*/":
@@ -140,7 +140,7 @@ def _terms(value: Symbol) -> list[str]:
 
 
 def load_names(e: Equations, parameters: Collection[str]) -> tuple[str, ...]:
-    """Measures of the contacts that a page has: those of forces and energies need its energy, a peak force the duration of an impact."""
+    """Return the measures of a machine's contacts: forces and energies need its energy, a peak force the duration of an impact."""
     if e.energy is None:
         return ("impact_rate",) if e.gap else ()
     found: list[str] = []
