@@ -1,7 +1,7 @@
-"""Contacts, and what words are made of there: letters of events, modes, and the changes that a contact's law proposes where a margin vanishes.
+"""Contacts and their contributions to words: letters of events, modes, and the changes of the word that a contact's law proposes where a margin vanishes.
 
-At a border the old and the new description are the same motion, so the new word's events sit at known places of the border orbit: at
-its own events, or where the margin vanished. A change says so in words and places only; machines turn places into numbers.
+At a border the old and the new word describe the same motion, so the events of the new word have known positions on the border orbit: at
+its events, or where the margin vanishes. A `Change` contains letters and positions only; machines compute the numbers.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 HIT, TURN, STICK, SLIP, SWITCH, HOLD, RELEASE, STROBE = range(8)
-"""What an event does."""
+"""Kinds of events."""
 
 NAMES = {
     HIT: "impact",
@@ -36,7 +36,7 @@ STRENGTH = {
     SWITCH: "switch",
     STROBE: "strobe",
 }
-"""Margin that says how definite an event is: speed of an impact, excess or reserve of a friction, rate of a surface."""
+"""Kind of event -> name of its margin: speed of an impact, excess or reserve of friction, rate of a surface."""
 
 BORDERS = {
     "wall": "wall-graze",
@@ -50,12 +50,12 @@ BORDERS = {
     "switch": "switch-graze",
     "strobe": "corner",
 }
-"""Margin -> the kind of border at which it vanishes; of a duration that vanishes the alphabet tells (`Alphabet.together`)."""
+"""Name of a margin -> kind of border at which it vanishes; for a duration see `Alphabet.together`."""
 
 
 @dataclass(frozen=True)
 class Letter:
-    """One letter: its text, the index of its contact, what it does, and for a switch the sign after it."""
+    """One letter: its text, the index of its contact, the kind of event, and for a switch the sign after it."""
 
     text: str
     contact: int
@@ -64,12 +64,12 @@ class Letter:
 
 
 Mode = int | tuple[int, ...]
-"""What the contacts do between two events: an entry for each, or that of the one contact whose mode is written; read and written by the
-alphabet (`orbits.words.alphabet`)."""
+"""State of the contacts between two events: one entry for each, or that of the only contact whose entry is written; see
+`orbits.words.alphabet`."""
 
 
 class What(Enum):
-    """What happens to the word; the value is the sentence."""
+    """Changes of a word; the value is the text."""
 
     STICK_APPEARS = "a stick appears inside a flight"
     STICK_DISAPPEARS = "a stick disappears inside a flight"
@@ -94,21 +94,29 @@ class What(Enum):
 
 
 class Grows(Enum):
-    """What vanishes at the border and grows beyond it."""
+    """The quantity that is zero at the border and grows beyond it on the branch of the new word."""
 
     GAP = "gap"
-    """The clock between the first two new events."""
+    """The time between the first two new events."""
     SPEED = "speed"
     """The speed of the impact that is the first new event."""
     MARGIN = "margin"
-    """A margin of the new word; nothing was inserted."""
+    """A margin of the new word; no event was inserted."""
 
 
 class Spot(NamedTuple):
-    """Where a new event sits: at event `node` of the border orbit, or, None, where the margin vanishes inside the flight.
+    """Position of a new event on the border orbit.
 
-    `clock` names another event whose instant it takes, `between` puts it halfway to the next one, `later` moves it by so many first
-    sizes of what grows.
+    Attributes
+    ----------
+    node : int or None
+        The event of the border orbit whose state it takes; None: the point inside the flight where the margin vanishes.
+    later : float
+        Displacement in time, in units of the first size of the growing quantity.
+    clock : int or None
+        Another event of the border orbit whose instant it takes.
+    between : bool
+        Whether its instant is halfway to the next event.
     """
 
     node: int | None
@@ -119,15 +127,17 @@ class Spot(NamedTuple):
 
 @dataclass(frozen=True)
 class Change:
-    """Events `start` .. `stop - 1` give way to others.
+    """Replacement of the events `start` .. `stop - 1` of a word.
 
     Attributes
     ----------
     start, stop : int
     events : tuple of str
+        The new events.
     modes : tuple of modes
+        The mode after each new event.
     spots : tuple of Spot
-        Where each of the new events sits.
+        Position of each new event.
     grows : Grows
     what : What
     """
@@ -142,24 +152,24 @@ class Change:
 
 
 class Site(NamedTuple):
-    """The border orbit's word, seen from the event to which the vanishing margin belongs.
+    """The word of a border orbit, and the event to which the vanishing margin belongs.
 
     Attributes
     ----------
     word : orbits.words.Word
-        Of the whole cycle.
+        Word of the whole cycle.
     place : int
-        The event; a flight is counted with the event before it.
+        The event; a flight belongs to the event before it.
     lengths : float array
-        Clock that passes in each flight.
+        Duration of each flight.
     unit : int
-        Number of events after which the cycle repeats, or mirrors, itself.
+        Number of events after which the cycle repeats itself or its mirror image.
     at : int
-        For a contact that is met: the event at which that is, -1 for the inside of the flight.
+        If a contact is reached: the event at which this happens, or -1 inside the flight.
     sign : int
-        Of the velocity after a slip whose reserve vanishes.
+        Sign of the velocity after a slip if the reserve of friction vanishes inside a stick.
     ahead : bool
-        Whether event `at` is the one before the flight in which the contact is met, not the one after it.
+        Whether event `at` is the one before the flight in which the contact is reached (else the one after it).
     """
 
     word: Any
@@ -171,15 +181,15 @@ class Site(NamedTuple):
     ahead: bool = False
 
     def entry(self, place: int, contact: int) -> int:
-        """What a contact does after an event."""
+        """Return the entry of a contact in the mode after an event."""
         return self.word.alphabet.entry(self.word.mode(place), contact)
 
     def mode(self, place: int, contact: int, value: int) -> Mode:
-        """The mode after an event, with another entry for one contact."""
+        """Return the mode after an event, with another entry for one contact."""
         return self.word.alphabet.with_entry(self.word.mode(place), contact, value)
 
     def is_event(self, place: int, contact: int, *kinds: int) -> bool:
-        """Whether an event inside the word is one of a contact's, of these kinds."""
+        """Whether event `place` exists, belongs to the contact and is of one of these kinds."""
         if not 0 <= place < len(self.word):
             return False
         letter = self.word.letter(place)

@@ -1,4 +1,4 @@
-"""Dry friction: Coulomb's law in words, and a friction in a machine file."""
+"""Dry friction (Coulomb's law): its letters, modes and changes of words, and the class `DryFriction` for machine files."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is
 
 
 class Beat(NamedTuple):
-    """An event that a friction notices: its own, or an impact that changes its velocity.
+    """An event that affects a friction: its own, or an impact that changes its velocity.
 
-    `sign` is that of the velocity after it, where the event says it; before an impact that says it the velocity has the other one.
+    `sign` is the sign of the velocity after the event, if the event determines it; before an impact with a sign the velocity has the opposite one.
     """
 
     kind: int
@@ -24,7 +24,7 @@ class Beat(NamedTuple):
 
 
 class CannotFollow(ValueError):
-    """Event `beat` of those that a friction notices cannot come while the friction does what `came` says."""
+    """Among the events that affect a friction, event `beat` is impossible after the mode `came`."""
 
     def __init__(self, beat: int, came: int | None) -> None:
         super().__init__(beat, came)
@@ -32,53 +32,54 @@ class CannotFollow(ValueError):
 
 
 class FrictionLaw:
-    """What a dry friction means for words: turns, sticks and slips, the direction of sliding as mode, and how sticks come and go."""
+    """Dry friction in words: letters (turn, stick, slip), modes (direction of sliding), margins, and changes of the word at borders."""
 
     name: str
     letters: Sequence[str]
     reversal = TURN
-    """The event at which its velocity changes its sign by itself."""
+    """Kind of the event at which the velocity changes its sign without an impact."""
 
     def __init__(self, name: str, letters: Sequence[str] = ("t", "s", "u")) -> None:
         self.name, self.letters = name, tuple(letters)
 
     @property
     def described(self) -> str:
-        """What it is, by its name."""
+        """Kind of contact and its name, for messages."""
         return f"friction {self.name!r}"
 
     def events(self, j: int) -> list[Letter]:
-        """The letters, for the contact with index j."""
+        """Return the letters, for the contact with index j."""
         return [Letter(text, j, kind) for text, kind in zip(self.letters, (TURN, STICK, SLIP))]
 
     def mirrored(self, mode: int, turned: bool) -> int:
-        """The mode of the mirror image: all velocities change their signs."""
+        """Return the entry of the mirror image, in which all velocities change their signs."""
         return -mode if mode in (SLIDE_BACK, SLIDE_ON) else mode
 
     def watched(self, mode: int) -> str:
-        """The margin that watches it between events: the time or reserve of a stick, the velocity of a flight."""
+        """Return the name of its margin inside a flight: time or reserve of a stick, else the relative speed."""
         return "hold" if mode == STUCK else "flight"
 
     def together(self, here: int, there: int) -> str:
-        """The kind of border at which two consecutive events of this friction, of these kinds, fall together."""
+        """Return the kind of border at which two consecutive events of this friction, of these kinds, coincide."""
         return "velocity-graze" if here == there == TURN else "stick"
 
     # ------------------------------------------------------------------ modes of a word
     def directions(self, beats: Sequence[Beat], noted: Mapping[int, int] | None = None) -> list[int]:
-        """The mode after each event that this friction notices, in a cyclic word.
+        """Return the mode after each event that affects this friction, in a cyclic word; linear time.
 
-        What no event fixes becomes, at a slip, a reversal of the motion that the stick before it ended; a word of turns alone
-        begins sliding on. Linear time.
+        Where the events do not determine the direction, a slip reverses the motion that its stick ended, and a word of turns alone
+        begins with `SLIDE_ON`.
 
         Parameters
         ----------
         beats : sequence of Beat
         noted : mapping, optional
-            Modes after some of the events that the word itself says.
+            Event -> mode after it, for events with a written mode.
 
         Raises
         ------
         CannotFollow
+            If an event is impossible after the one before it.
         """
         n = len(beats)
         after: list[int | None] = [STUCK if b.kind == STICK else b.sign for b in beats]
@@ -99,7 +100,7 @@ class FrictionLaw:
                 _settle(beats, after, [i])
         if all(mode is None for mode in after):  # turns alone
             after = [-SLIDE_ON if i % 2 else SLIDE_ON for i in range(n)]
-        for i, mode in enumerate(after):  # an impact that may leave either direction keeps the one there was
+        for i, mode in enumerate(after):  # an impact without a sign keeps the direction
             if mode is None:
                 after[i] = SLIDE_ON if after[i - 1] is None else after[i - 1]
                 _settle(beats, after, [i])
@@ -108,6 +109,7 @@ class FrictionLaw:
 
     @staticmethod
     def _refuse(beats: Sequence[Beat], after: Sequence[int | None]) -> None:
+        """Raise `CannotFollow` for the first impossible event."""
         for i in [*range(1, len(beats)), 0][: len(beats)]:
             b, came, mode = beats[i], after[i - 1], after[i]
             sliding = came in (SLIDE_BACK, SLIDE_ON)
@@ -122,7 +124,7 @@ class FrictionLaw:
 
     # ------------------------------------------------------------------ how the word changes
     def met(self, site: Site, j: int) -> list[Change]:
-        """The velocity touches zero inside a flight, or the reserve of a stick does inside it."""
+        """Return the changes if the velocity vanishes inside a flight, or the reserve of friction inside a stick."""
         word, place = site.word, site.place
         start = place + 1 if len(word) else 0
         mode, text_of = word.mode(place), word.alphabet.text_of
@@ -137,14 +139,14 @@ class FrictionLaw:
                 and following + 1 < len(word)
                 and site.lengths[following] < GROWING.short
             ):
-                return self._stick(site, following, j)  # it comes to rest where a stick is about to vanish
+                return self._stick(site, following, j)  # the velocity vanishes next to a very short stick
             events = (text_of(j, STICK), text_of(j, SLIP))
             modes = (word.alphabet.with_entry(mode, j, STUCK), mode)
             what = What.STICK_APPEARS
         return [Change(start, start, events, modes, (Spot(None, later=-1.0), Spot(None)), Grows.GAP, what)]
 
     def weakened(self, site: Site, j: int) -> list[Change]:
-        """The strength of one of its events vanishes."""
+        """Return the changes if the margin (strength) of one of its events vanishes."""
         letter, place = site.word.letter(site.place), site.place
         if letter.kind == TURN:
             return self._turn(site, place, j)
@@ -154,7 +156,7 @@ class FrictionLaw:
         return self._stick(site, place - 1, j) if letter.kind == SLIP and vanishing else []
 
     def collapsed(self, site: Site, j: int) -> list[Change]:
-        """Two consecutive events of this friction fall together."""
+        """Return the changes if two consecutive events of this friction coincide."""
         place = site.place
         here, there = site.word.letter(place).kind, site.word.letter(place + 1).kind
         if here == STICK:
@@ -167,7 +169,7 @@ class FrictionLaw:
         return []
 
     def _turn(self, site: Site, place: int, j: int) -> list[Change]:
-        """The force no longer beats friction at a turn."""
+        """Return the changes if the force no longer exceeds friction at a turn."""
         word, found = site.word, []
         text_of = word.alphabet.text_of
         if site.is_event(place + 1, j, STICK):
@@ -181,7 +183,7 @@ class FrictionLaw:
         return found
 
     def _stick(self, site: Site, place: int, j: int) -> list[Change]:
-        """A stick that vanishes, or that is about to be preceded by a turn."""
+        """Return the changes of a stick that vanishes, or that has a turn before it beyond the border."""
         word, text_of = site.word, site.word.alphabet.text_of
         stick, turn = word.events[place], text_of(j, TURN)
         before, gap = site.entry(place - 1, j), site.lengths[place - 1]
@@ -195,7 +197,7 @@ class FrictionLaw:
             spots = (Spot(place), Spot(place, later=1.0))
             other = Change(place, place + 1, (turn, stick), modes, spots, Grows.GAP, What.TURN_APPEARS)
         if not site.is_event(place + 1, j, SLIP) or site.lengths[place] >= GROWING.short:
-            return [other]  # the stick still lasts: what vanishes is the reserve of friction where it begins
+            return [other]  # the stick has a duration: the reserve of friction at its beginning vanishes
         if site.entry(place + 1, j) == before:
             gone = Change(place, place + 2, (), (), (), Grows.MARGIN, What.STICK_DISAPPEARS)
         else:
@@ -205,7 +207,7 @@ class FrictionLaw:
 
 
 def _settle(beats: Sequence[Beat], after: list[int | None], known: list[int]) -> None:
-    """Let known modes go on over turns; then, where nothing fixes a slip, reverse the motion that its stick ended."""
+    """Extend known modes over turns; then let each slip without a direction reverse the motion that its stick ended."""
     n, slips = len(beats), []
     while known or slips:
         if not known:
@@ -230,10 +232,10 @@ def _settle(beats: Sequence[Beat], after: list[int | None], known: list[int]) ->
 @hinted
 @dataclass(frozen=True, eq=False)
 class DryFriction(FrictionLaw):
-    """Dry friction between two bodies, or a body and the ground.
+    """Dry friction between two bodies, or between a body and the ground.
 
-    While they slide the force is ``-limit sign(velocity)``; while they stick it is the one that keeps the velocity at zero,
-    until that would have to exceed the limit. `motion` finds the force in ``contact.<name>``.
+    While they slide, the force is ``-limit sign(velocity)``; while they stick, it is the force that keeps the velocity at zero,
+    as long as this does not exceed the limit. The function `motion` of a machine file reads the force as ``contact.<name>``.
 
     Parameters
     ----------
@@ -244,7 +246,7 @@ class DryFriction(FrictionLaw):
         Largest force: the name of a parameter, a number, or a function of ``(state, phase, p)`` (the normal force may vary,
         and so may the coefficient with the velocity).
     letters : sequence of three str
-        For a turn (the velocity changes its sign at once), a stick and a slip.
+        Letters of a turn (the velocity changes its sign without sticking), a stick and a slip.
     """
 
     name: str

@@ -1,8 +1,8 @@
-"""Switches: laws that change at a surface, without a jump of the state. In words, and in a machine file.
+"""Switches: surfaces at which the equations change without a jump of the state; their letters, signs and changes of words.
 
-A surface may move with the velocity of a friction. It then has an extreme wherever the friction turns, or sticks and slips back: beyond it the
-word has a crossing before that event and another one after it. Where it sticks and slips on, the crossing comes either before the stick or after
-the slip.
+A surface function may depend on a position whose velocity is that of a friction (`Alphabet.rides`). Then it has an extremum wherever the
+friction turns, or sticks and slips back: if the extremum passes zero, the word gets a crossing before this event and one after it. If the
+friction sticks and slips on, the crossing is either before the stick or after the slip.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from orbits.settings import GROWING
 class Switch:
     """A surface at which the equations of motion change: stops with springs, backlash, clutches.
 
-    `motion` finds the sign of the surface, +1 or -1, in ``contact.<name>``.
+    The function `motion` of a machine file reads the sign of the surface, +1 or -1, as ``contact.<name>``.
 
     Parameters
     ----------
     name : str
-        Its letters in words are ``name+`` and ``name-``: the sign after the event.
+        The letters are ``name+`` and ``name-``, with the sign after the event.
     surface : callable
         ``(state, phase, p)`` -> a number that is zero on the surface.
     """
@@ -36,33 +36,33 @@ class Switch:
     surface: Callable
 
     reversal: ClassVar[int] = SWITCH
-    """The event at which its sign changes by itself."""
+    """Kind of the event at which the sign changes without an impact."""
 
     @property
     def letters(self) -> tuple[str, str]:
-        """What a word calls the two crossings."""
+        """Letters of the two crossings."""
         return (f"{self.name}+", f"{self.name}-")
 
     @property
     def described(self) -> str:
-        """What it is, by its name."""
+        """Kind of contact and its name, for messages."""
         return f"switch {self.name!r}"
 
     def events(self, j: int) -> list[Letter]:
-        """The letters, for the contact with index j."""
+        """Return the letters, for the contact with index j."""
         plus, minus = self.letters
         return [Letter(plus, j, SWITCH, 1), Letter(minus, j, SWITCH, -1)]
 
     def mirrored(self, mode: int, turned: bool) -> int:
-        """The mode of the mirror image."""
+        """Return the sign of the mirror image."""
         return -mode if turned else mode
 
     def watched(self, mode: int) -> str:
-        """The margin that watches it between events."""
+        """Return the name of its margin inside a flight."""
         return "switch"
 
     def together(self, here: int, there: int) -> str:
-        """The kind of border at which two consecutive crossings fall together."""
+        """Return the kind of border at which two consecutive crossings coincide."""
         return "switch-graze"
 
     def signs(
@@ -72,22 +72,23 @@ class Switch:
         noted: Mapping[int, int],
         hits: Mapping[int, int | None],
     ) -> list[int]:
-        """The sign after each event of a word.
+        """Return the sign after each event of a word.
 
         Parameters
         ----------
         letters : sequence of Letter
-            Of the whole word.
+            Letters of the whole word.
         j : int
             Index of this contact.
         noted : mapping
-            Event -> the sign after it, where the word says so.
+            Event -> sign after it, for events with a written mode.
         hits : mapping
-            Impacts that jump over the surface -> the sign after them (before them: the opposite); None: either.
+            Impact that may jump over the surface -> sign after it (before it: the opposite sign); None: both signs are possible.
 
         Raises
         ------
         NotAlternating
+            If the crossings do not alternate.
         """
         n = len(letters)
         own = [i for i in range(n) if letters[i].contact == j]
@@ -97,10 +98,10 @@ class Switch:
         fixed = {i: letters[i].sign for i in own} | {i: sign for i, sign in hits.items() if sign is not None}
         last = [bisect_right(places, i) - 1 for i in range(n)]  # -1: the last one, cyclically
         after = {places[last[i]]: sign for i, sign in noted.items()} | fixed
-        for k, i in enumerate(places):  # what comes next says what was before it
+        for k, i in enumerate(places):  # a crossing determines the sign before it
             if i in fixed:
                 after.setdefault(places[k - 1], -fixed[i])
-        for k in range(2 * len(places)):  # an impact that may leave either sign keeps the one there was
+        for k in range(2 * len(places)):  # an impact after which both signs are possible keeps the sign
             before = after.get(places[(k - 1) % len(places)])
             if before is not None:
                 after.setdefault(places[k % len(places)], before)
@@ -111,7 +112,7 @@ class Switch:
 
     # ------------------------------------------------------------------ how the word changes
     def met(self, site: Site, j: int) -> list[Change]:
-        """A flight touches the surface: two crossings are born."""
+        """Return the changes if a flight touches the surface: two crossings appear, or one next to an impact."""
         word = site.word
         if len(word) and site.lengths[site.place] < GROWING.close:
             found = self.collapsed(site, j)
@@ -131,7 +132,7 @@ class Switch:
         return [Change(start, start, events, modes, spots, Grows.GAP, What.CROSSINGS_APPEAR)]
 
     def _beside(self, site: Site, j: int) -> Change:
-        """An impact jumps to the surface, or from it: there is a crossing just after it, or just before it."""
+        """Return the change if an impact ends or begins at the surface: a crossing appears just after or just before it."""
         word, at = site.word, site.at
         here, text_of, hit = site.entry(site.place, j), word.alphabet.text_of, word.events[at]
         if site.ahead:
@@ -143,7 +144,7 @@ class Switch:
         return Change(at, at + 1, events, modes, spots, Grows.GAP, What.CROSSING_APPEARS)
 
     def weakened(self, site: Site, j: int) -> list[Change]:
-        """Two crossings that meet disappear."""
+        """Return the changes if the rate at a crossing vanishes: two coinciding crossings disappear."""
         word, found = site.word, withdrawn(site, j)
         for first in (site.place, site.place - 1):
             if first < 0 or first + 1 >= len(word):
@@ -156,7 +157,7 @@ class Switch:
         return found
 
     def collapsed(self, site: Site, j: int) -> list[Change]:
-        """Two consecutive crossings fall together, or one falls into an impact that jumps over the surface."""
+        """Return the changes if two consecutive crossings coincide, or one coincides with an impact that jumps over the surface."""
         word, place = site.word, site.place
         for hit, own in ((place, place + 1), (place + 1, place)):
             jumped = (word.letter(hit).contact, j) in word.alphabet.flips
@@ -167,7 +168,7 @@ class Switch:
 
 
 def touched(site: Site, j: int, k: int) -> list[Change]:
-    """A turn, or a stick from which it slips back, of friction k meets the surface of switch j, which the word does not cross there."""
+    """Return the changes if a turn of friction k, or a stick from which it slips back, reaches the surface of switch j without a crossing."""
     word, text_of = site.word, site.word.alphabet.text_of
     at = site.at - 1 if site.is_event(site.at, k, SLIP) else site.at
     stop = at + 2 if site.is_event(at + 1, k, SLIP) else at + 1
@@ -175,7 +176,7 @@ def touched(site: Site, j: int, k: int) -> list[Change]:
         return []
     here = site.entry(at, j)
     if site.entry(stop - 1, k) == site.entry(at - 1, k):
-        return []  # it goes on through the surface: the word has that crossing already
+        return []  # the motion continues through the surface: the word has this crossing already
     inner = range(at, stop)
     events = (text_of(j, SWITCH, -here), *(word.events[i] for i in inner), text_of(j, SWITCH, here))
     modes = (site.mode(at - 1, j, -here), *(site.mode(i, j, -here) for i in inner), word.mode(stop - 1))
@@ -184,7 +185,7 @@ def touched(site: Site, j: int, k: int) -> list[Change]:
 
 
 def withdrawn(site: Site, j: int) -> list[Change]:
-    """The crossings of switch j beside a turn or a stick of a friction with which its surface moves fall into it."""
+    """Return the changes if crossings of switch j coincide with a turn or stick of a friction with which its surface moves."""
     word = site.word
     frictions = [k for (switch, k) in word.alphabet.rides if switch == j]
     found = []
@@ -196,6 +197,7 @@ def withdrawn(site: Site, j: int) -> list[Change]:
 
 
 def _withdrawn(site: Site, j: int, at: int) -> list[Change]:
+    """Do `withdrawn` for the turn or stick `at`."""
     word = site.word
     stop = at + 1 if word.letter(at).kind == TURN else at + 2
     before = site.is_event(at - 1, j, SWITCH) and site.lengths[at - 1] < GROWING.close
@@ -209,7 +211,7 @@ def _withdrawn(site: Site, j: int, at: int) -> list[Change]:
         return [Change(at - 1, stop + 1, events, modes, spots, Grows.MARGIN, What.CROSSINGS_VANISH)]
     if stop == at + 1 or before == after:
         return []
-    if before:  # beyond the border it sticks before it reaches the surface
+    if before:  # beyond the border the friction sticks before the surface is reached
         outside = site.entry(at - 2, j)
         modes = (*(site.mode(i, j, outside) for i in inner), word.mode(stop - 1))
         events, spots = (*events, word.events[at - 1]), (*spots, Spot(stop - 1, later=1.0))

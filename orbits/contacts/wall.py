@@ -1,4 +1,4 @@
-"""Walls: stops that bodies hit. Newton's impact law in words, and a wall in a machine file."""
+"""Walls with Newton's impact law: their letters, modes and changes of words, and the class `Wall` for machine files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FREE, HELD = 0, 1  # modes
 
 
 class WallLaw:
-    """What a wall means for words: one letter, two modes, and how an impact comes and goes."""
+    """A wall in words: one letter, two modes, margins, and changes of the word at borders."""
 
     letter: str
 
@@ -26,33 +26,33 @@ class WallLaw:
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The one letter of its impacts."""
+        """The letter of its impacts."""
         return (self.letter,)
 
     @property
     def described(self) -> str:
-        """What it is, by its name."""
+        """Kind of contact and its name, for messages."""
         return f"wall {self.letter!r}"
 
     def events(self, j: int) -> list[Letter]:
-        """The letters, for the contact with index j."""
+        """Return the letters, for the contact with index j."""
         return [Letter(self.letter, j, HIT)]
 
     def mirrored(self, mode: int, turned: bool) -> int:
-        """The mode of the mirror image."""
+        """Return the entry of the mirror image."""
         return mode
 
     def watched(self, mode: int) -> str:
-        """The margin that watches it between events: the distance, or the push of a wall that holds."""
+        """Return the name of its margin inside a flight: the distance, or the push of a wall that holds."""
         return "push" if mode == HELD else "wall"
 
     def together(self, here: int, there: int) -> str:
-        """The kind of border at which two consecutive events of this wall fall together."""
+        """Return the kind of border at which two consecutive impacts on this wall coincide."""
         return "vanishing-event"
 
     # ------------------------------------------------------------------ how the word changes
     def met(self, site: Site, j: int) -> list[Change]:
-        """The gap vanishes where no impact is: inside a flight, or at a turn or stick."""
+        """Return the changes if the gap vanishes without an impact: inside a flight, or at a turn or stick."""
         if site.at >= 0:
             return self._met_at_event(site, j)
         word, start = site.word, site.place + 1 if len(site.word) else 0
@@ -75,7 +75,10 @@ class WallLaw:
         return [Change(place, place + 1, events, modes, spots, Grows.SPEED, What.STICK_HITS)]
 
     def weakened(self, site: Site, j: int) -> list[Change]:
-        """The speed of an impact vanishes: it disappears, or, where it turned a velocity, becomes a turn (of a switch: a crossing)."""
+        """Return the changes if the speed of an impact vanishes.
+
+        The impact disappears; if it changed the sign of a friction's velocity (or of a switch), it becomes a turn (or a crossing).
+        """
         word, place = site.word, site.place
         turned = [
             k
@@ -100,7 +103,7 @@ class WallLaw:
         return found
 
     def collapsed(self, site: Site, j: int) -> list[Change]:
-        """Two consecutive impacts fall together: infinitely many do."""
+        """Return no changes if two consecutive impacts coincide, since then infinitely many do."""
         return []
 
 
@@ -109,21 +112,21 @@ class WallLaw:
 class Wall(WallLaw):
     """A unilateral contact with Newton's impact law.
 
-    The gap stays at or above zero. At an impact an impulse acts along `push`, as large as turns the gap's rate into
-    -restitution times itself. Where infinitely many impacts pile up, or the restitution leaves no speed, the wall then
-    holds the bodies together for as long as it has to push.
+    The gap stays at or above zero. At an impact an impulse acts along `push`; its size is such that the rate of the gap after it
+    is -restitution times the rate before. After an accumulation of infinitely many impacts, or an impact without rebound, the wall
+    holds the bodies together as long as its force pushes.
 
     Parameters
     ----------
     letter : str
-        Its letter in words, for example "R".
+        Letter of its impacts, for example "R".
     gap : callable
         ``(state, phase, p)`` -> the distance, 0 at contact.
     push : mapping
-        State's name -> how a unit impulse changes it: a number, the name of a parameter, or a function of
-        ``(state, phase, p)``. Only rates of positions may be pushed: an impulse does not move the gap itself.
+        Name of a state -> its change by a unit impulse: a number, the name of a parameter, or a function of
+        ``(state, phase, p)``. Only velocities may change: an impulse does not change the gap itself.
     restitution : str or float
-        Newton's coefficient, or the name of a parameter; above 0 and at most 1.
+        Coefficient of restitution, or the name of a parameter; above 0 and at most 1.
     """
 
     letter: str

@@ -1,1 +1,1 @@
-"""Pictures of orbits; matplotlib is imported by the first of them."""
+"""Pictures of orbits; matplotlib is imported when the first picture is drawn."""

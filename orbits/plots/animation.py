@@ -1,4 +1,4 @@
-"""One orbit in motion: what moves in the cavity, and below it the history with the moment that is shown."""
+"""Animation of one orbit: moving bodies and walls above, time history with a marker of the current time below."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from orbits.orbit import Orbit
 
 WALL = "0.35"
-ROOM = 0.12  # of the range of positions, left free at both sides
+ROOM = 0.12  # free space at both sides, relative to the range of positions
 
 
 @hinting
@@ -34,34 +34,34 @@ def animate(
     figsize: tuple[float, float] = (6.4, 4.2),
     style: Style = None,
 ) -> FuncAnimation:
-    """The orbit in motion over its period, which repeats.
+    """Animate the orbit over its period, in a loop.
 
-    Above, the bodies and walls where they are; below, all positions (of a machine file: states) over the period. A machine whose states
-    have no rates among them shows a point on its phase portrait instead.
+    The upper panel shows bodies and walls, the lower one all positions (for a declared machine: states) over the period. If no state
+    of a declared machine is the rate of another one, the upper panel shows a point on the phase portrait.
 
     Parameters
     ----------
     orbit : Orbit
     path : path, optional
-        Of a gif, an mp4 (by ffmpeg) or an html page with a player, which is written.
+        File to be written: gif, mp4 (needs ffmpeg) or an html page with a player.
     seconds : float
-        How long the orbit's period takes.
+        Duration of one period in the animation.
     rate : int
-        Pictures a second.
+        Pictures per second.
     figsize : (float, float)
-        Inches.
+        Size in inches.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+        A style or rcParams of matplotlib, which override those of the package.
 
     Returns
     -------
     matplotlib.animation.FuncAnimation
-        Shown with a player where it is the value of a notebook's cell.
+        A notebook shows it with a player.
 
     Raises
     ------
     ValueError
-        If nothing can be written to the path, or `seconds` or `rate` is not positive.
+        If the path cannot be written, or `seconds` or `rate` is not positive.
     """
     frames = pictures(seconds, rate)
     if path is not None:
@@ -85,9 +85,9 @@ def animate(
 
 
 def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
-    """Draw what moves; the function of the frame that moves it."""
+    """Draw bodies and walls; return a function that moves them to a frame."""
     stage = seen.animation or {}
-    if "box" in stage:  # evenly spread over the period
+    if "box" in stage:  # samples are evenly spaced over the period
         bodies, walls = {"absorber": stage["body"]}, [stage["box"] - wall for wall in stage["walls"]]
         given = np.linspace(even[0], 2.0 * even[-1] - even[-2], len(stage["box"]))
     else:
@@ -121,7 +121,7 @@ def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
 
 
 def _point(axes: Axes, seen: Shown, even: np.ndarray, real: bool) -> Callable[[int], None]:
-    """A point on the phase portrait."""
+    """Draw a point on the phase portrait; return a function that moves it to a frame."""
     phase(axes, seen, real)
     across, up = (np.interp(even, seen.clock, values) for values in (seen.x, seen.y))
     (mark,) = axes.plot([across[0]], [up[0]], "o", color="0.1", zorder=5)

@@ -1,4 +1,4 @@
-"""Phase portrait and time history of one orbit with its events, and what it is in words, for headings and notebooks."""
+"""Phase portrait and time history of one orbit with its events, and its description for headings and notebooks."""
 
 from __future__ import annotations
 
@@ -39,8 +39,10 @@ def portrait(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw the orbit: of a built-in machine w' against w, left wall on the left, and motions over forcing periods; of a declared machine the first two
-    states against one another, and all states over time.
+    """Draw the phase portrait and the time history of an orbit.
+
+    For a built-in machine: w' against w (left wall on the left), and positions over forcing periods. For a declared machine: the second state
+    against the first, and all states over time.
 
     Parameters
     ----------
@@ -48,17 +50,17 @@ def portrait(
     points : int
         Samples over the period.
     axes : Axes or two of them, optional
-        Drawn on: one has the phase portrait (or the history, if `show` says so), two have both. Without, a new figure.
+        Axes for the phase portrait (with `show` = "history": the history), or for both. Default: a new figure.
     show : {"both", "phase", "history"}, optional
-        By default both, or the phase portrait alone where a figure is small.
+        Default: both; in a small figure the phase portrait.
     heading : bool
-        Write what the orbit is above a new figure.
+        Write a title above a new figure.
     legend : bool or str
-        Whether the history is explained, or where: "below", or a place that matplotlib knows.
+        Whether the history has a legend, or its place: "below", or a location of matplotlib.
     figsize : (float, float), optional
-        Inches, of a new figure.
+        Size of a new figure in inches.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+        A style or rcParams of matplotlib, which override those of the package.
 
     Returns
     -------
@@ -67,7 +69,7 @@ def portrait(
     Raises
     ------
     ValueError
-        If `show` is none of its values, or does not fit the axes given.
+        If `show` is unknown, or needs a different number of axes.
     """
     if show is not None and show not in PANELS:
         raise ValueError(f"show = {show!r} is unknown; choose one of {', '.join(PANELS)}")
@@ -99,7 +101,7 @@ def portrait(
 
 
 def title(orbit: Orbit) -> str:
-    """What the orbit is, in two lines: word, impacts, symmetry and stability; then its parameters."""
+    """Return a title of two lines: word, impacts, symmetry and stability; then the parameters."""
     size = np.abs(orbit.multipliers)
     if (
         size.size
@@ -111,9 +113,8 @@ def title(orbit: Orbit) -> str:
         state = "stable" if orbit.stable else "unstable"
     state += "" if orbit.real else ", virtual: no machine can follow it"
     parameters = quantities(orbit)
-    plain = set(parameters) == set(
-        orbit.parameters
-    )  # numbers have symbols, quantities are called by their names
+    # dimensionless numbers are shown by their symbols, physical quantities by their names
+    plain = set(parameters) == set(orbit.parameters)
     here = ", ".join(
         f"{sign(name) if plain else name.replace('_', ' ')} = {value}"
         for name, value in parameters.items()
@@ -130,7 +131,7 @@ def title(orbit: Orbit) -> str:
 
 
 def phase(axes: Axes, seen: Shown, real: bool) -> None:
-    """y against x; what jumps at an event is dashed, a motion that no machine follows dotted."""
+    """Draw y against x; jumps at events are dashed, virtual orbits dotted."""
     if seen.limits is not None:
         ends, reach = seen.limits
         axes.axhline(0.0, color="0.75", lw=0.7, zorder=0)
@@ -156,8 +157,8 @@ def phase(axes: Axes, seen: Shown, real: bool) -> None:
 
 
 def history(axes: Axes, seen: Shown, real: bool) -> None:
-    """All curves over time, the walls beside them, and the events."""
-    for wall, edge in zip(seen.walls, seen.edges):  # where a body touches it
+    """Draw all curves over time, with walls and events."""
+    for wall, edge in zip(seen.walls, seen.edges):  # position of the absorber at contact
         axes.plot(seen.clock, edge, color=CAVITY, lw=1.0)
         axes.fill_between(seen.clock, edge, edge - 0.25 * seen.half * np.sign(wall), color=WALL, lw=0.0)
     for curve in seen.curves.values():
@@ -178,7 +179,7 @@ def history(axes: Axes, seen: Shown, real: bool) -> None:
 
 
 def page(orbit: Orbit) -> str:
-    """What an orbit is, line by line: its motion in words, its parameters, multipliers and least margin.
+    """Return an HTML table of an orbit: motion, parameters, multipliers and least margin.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What pictures of an orbit show, in the units of its machine: a portrait, a history, walls and events, and what moves."""
+"""Data of an orbit's pictures, in the units of its machine: phase portrait, history, walls, events, and moving bodies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 LINE, CAVITY, ABSORBER = "#0b3c6f", "#6d6d6d", "#b5531c"
 COLOURS = (LINE, ABSORBER, "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
 MARKS = "os^Dv<>Ph*Xd"
-ALIKE = 0.02  # a state is the rate of another one if it is within this share of it
+ALIKE = 0.02  # largest deviation of a state from the rate of another one, relative to the latter's changes
 
 
 class Curve(NamedTuple):
@@ -34,7 +34,7 @@ class Curve(NamedTuple):
 
 
 class Happening(NamedTuple):
-    """An event: its letter and mark, what it is called, when it happens, where the portrait and the history (None: nowhere) have it."""
+    """An event: letter, marker, name in the legend, time, position in the portrait, and height in the history (None: no marker there)."""
 
     letter: str
     mark: str
@@ -47,27 +47,31 @@ class Happening(NamedTuple):
 
 @dataclass(frozen=True)
 class Shown:
-    """One period of an orbit.
+    """Data of one period of an orbit.
 
     Attributes
     ----------
     x, y, clock : float arrays (m,)
-        Of the portrait, and forcing periods or time; events have two samples, before and after.
+        Coordinates of the portrait, and time (or forcing periods); each event has two samples, before and after it.
     segment : int array (m,)
-        Index of the event before.
+        Index of the event before each sample.
     names : (str, str)
-        Of x and y, with their units.
+        Labels of x and y, with units.
     time, unit : str
-        What the history's axes are.
+        Labels of the axes of the history.
     curves : dict
-        By name.
-    walls : tuple of float
-        Where x ends; `edges` are the places of the walls in the history, `half` is half of what lies between them.
-    limits : ((float, float), (float, float)) or None
-        Of the portrait; the first ones may fall.
+        Name -> curve of the history.
     events : list of Happening
     animation : dict or None
-        What moves; see `orbits.plots.shown.scene`.
+        Moving bodies and walls; see `orbits.plots.shown.scene`.
+    walls : tuple of float
+        Values of x at the walls.
+    edges : tuple of float arrays (m,)
+        Positions of the walls in the history.
+    half : float
+        Half the distance between the walls.
+    limits : ((float, float), (float, float)) or None
+        Limits of the portrait's axes; those of x may be descending.
     """
 
     x: np.ndarray
@@ -87,13 +91,13 @@ class Shown:
 
 
 def shown(orbit: Orbit, points: int) -> Shown:
-    """An orbit as pictures show it, with about so many samples."""
+    """Return the data of an orbit's pictures, with about `points` samples."""
     model = orbit.model
     return _of_cavity(orbit, model, points) if isinstance(model, Model) else _of_states(orbit, points)
 
 
 def _of_cavity(orbit: Orbit, model: Model, points: int) -> Shown:
-    """The absorber in its cavity: its relative position and velocity, left wall on the left; both bodies over forcing periods."""
+    """Data for a built-in machine: relative velocity against relative position (left wall on the left), and both bodies over forcing periods."""
     params, table, motion = orbit.params, orbit.events, orbit.sample(points)
     known = model.gauges(("w", "w_rate"), params)
     (long, length), (fast, velocity) = (known.get(name, (1.0, "")) for name in ("w", "w_rate"))
@@ -124,7 +128,7 @@ def _of_cavity(orbit: Orbit, model: Model, points: int) -> Shown:
 
 
 def _of_states(orbit: Orbit, points: int) -> Shown:
-    """A declared machine: its first two states against one another, and all states over time."""
+    """Data for a declared machine: second state against first, and all states over time."""
     motion, names = orbit.sample(points), list(orbit.model.node_names[1:])
     x, y = names[0], names[1] if len(names) > 1 else names[0]
     clock = motion["phase"] / (2.0 * np.pi) if orbit.forced else motion["time"]
@@ -144,6 +148,7 @@ def _of_states(orbit: Orbit, points: int) -> Shown:
 def _events(
     orbit: Orbit, at: np.ndarray, x: np.ndarray, y: np.ndarray, heights: Sequence[Any] | np.ndarray
 ) -> list[Happening]:
+    """Return the events with markers and names."""
     alphabet, sides = orbit.word.alphabet, {"L": " left", "R": " right"}
     marks = dict(zip(alphabet.letters, MARKS * 9))
     called = {
@@ -157,7 +162,7 @@ def _events(
 
 
 def quantities(orbit: Orbit) -> dict[str, str]:
-    """Parameters of an orbit by name as text: quantities with their units, or the machine's plain numbers.
+    """Return the parameters of an orbit by name as text: quantities with units, or dimensionless numbers.
 
     Parameters
     ----------
@@ -171,21 +176,21 @@ def quantities(orbit: Orbit) -> dict[str, str]:
 
 
 def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
-    """Bodies and walls over a period, on one line; None where no state is the rate of another one.
+    """Return positions of bodies and walls of a declared machine over a period; None if no state is the rate of another one.
 
-    A body is a state whose rate is a state, too. A wall stands at its gap from the body that it pushes, on the side
-    from which it pushes; two bodies that push one another need none.
+    A body is a state whose rate is also a state. A wall is drawn at the distance of its gap from the body that it pushes, on the side
+    from which it pushes. A contact between two bodies is not drawn.
 
     Parameters
     ----------
     orbit : Orbit
     motion : dict
-        Its `sample`.
+        Result of its method `sample`.
 
     Returns
     -------
     dict or None
-        "bodies": positions by the states' names; "walls": "name", "at" and "side" (+1: beyond larger positions) of each;
+        "bodies": state name -> positions; "walls": list of dicts with "name", positions "at", and "side" (+1 at the larger positions);
         "periods".
     """
     from orbits.machines.page.machine import Machine
@@ -205,7 +210,7 @@ def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
         pushed = [name for name in contact.push if name in bodies]
         if len(pushed) != 1:
             continue
-        push = contact.push[pushed[0]]  # what a unit impulse does to the velocity
+        push = contact.push[pushed[0]]  # change of the velocity by a unit impulse
         if callable(push):
             push = push(*path[0], p)
         elif isinstance(push, str):
@@ -221,7 +226,7 @@ def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
 
 
 def _rates(states: tuple[str, ...], motion: dict[str, np.ndarray]) -> dict[str, str]:
-    """Which state is the rate of which, judged by their differences in time along the flights."""
+    """Return position -> rate among the states, found by comparing differences in time along the flights."""
     inside = np.diff(motion["segment"]) == 0
     steps = np.diff(motion["time"])[inside]
     found: dict[str, str] = {}
@@ -242,19 +247,19 @@ def _rates(states: tuple[str, ...], motion: dict[str, np.ndarray]) -> dict[str, 
 
 
 def scene(orbit: Orbit, points: int = 120) -> dict[str, Any]:
-    """Curves of one period, ready for JSON.
+    """Return the curves of one period as a dict for JSON.
 
     Parameters
     ----------
     orbit : Orbit
     points : int
-        About how many samples.
+        Approximate number of samples.
 
     Returns
     -------
     dict
-        ``portrait`` (x, y, their names, walls, whether x grows to the left), ``history`` (turns of the forcing or time, named
-        curves, walls), ``animation`` (positions of the cavity and of the absorber in it, evenly spaced in time; of a declared machine see
+        ``portrait`` (x, y, names, walls, whether x grows to the left), ``history`` (forcing periods or time, curves by name,
+        walls), ``animation`` (positions of cavity and absorber, evenly spaced in time; for a declared machine the result of
         `track`), ``events``.
     """
     seen = shown(orbit, points)

@@ -1,8 +1,8 @@
-"""Words: periodic motions as cyclic lists of events, over the alphabet of any machine, and the margins of their events.
+"""Words: cyclic lists of events of periodic motions, over the alphabet of any machine, and the names of their margins.
 
-A periodic orbit P_l^k is a cyclic list of events, l of them impacts, over k forcing periods. That list is its word. Some numbers watch each
-event and the flight after it (`Alphabet.watched` says what): where all are positive the orbit is real, and where one vanishes is a border.
-Flows compute them; here they have their names, as the laws of the contacts say.
+A periodic orbit P_l^k has a cyclic list of events, l of them impacts, over k forcing periods. This list is its word. Each
+event and the flight after it have margins (listed in `Alphabet.watched`): the orbit is real if all are positive, and a border is a point where one
+vanishes. Flows compute the values of margins; this module names them by the laws of the contacts.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def least_rotation(items: Sequence[Any]) -> int:
-    """Where the smallest rotation of a cyclic sequence begins; the first such place. Two pointers, linear time."""
+    """Index at which the smallest rotation of a cyclic sequence begins (the first such index); linear time."""
     n, i, j, k = len(items), 0, 1, 0
     while i < n and j < n and k < n:
         a, b = items[(i + k) % n], items[(j + k) % n]
@@ -41,24 +41,24 @@ def least_rotation(items: Sequence[Any]) -> int:
 
 
 def power(items: Sequence[Any]) -> int:
-    """How often the shortest root is written in a sequence."""
+    """Number of repetitions of its shortest root of which a sequence consists."""
     n = len(items)
     return next(n // r for r in range(1, n + 1) if n % r == 0 and items[r:] == items[: n - r])
 
 
 @dataclass(frozen=True)
 class Word:
-    """A cyclic list of events with the mode that follows each of them.
+    """A cyclic list of events with the mode after each of them.
 
-    Build one with `Word.parse` or a machine's `word`; the constructor trusts its arguments.
+    Make one with `Word.parse` or with the method `word` of a machine; the constructor does not check its arguments.
 
     Attributes
     ----------
     events : tuple of str
-        Letters of the alphabet; of the shaken machines ``L R t s u``, where every ``s`` is followed by its ``u``.
+        Letters of the alphabet; for the shaken machines ``L R t s u``, where every ``s`` is followed by its ``u``.
     modes : tuple
-        What is in contact, and how it slides, after each event: an int of the shaken machines (-1, 0 or +1), a tuple with an
-        entry per contact of others. A word without events may have one mode.
+        State of the contacts (holding, sliding direction, sticking) after each event: an int for the shaken machines (-1, 0 or +1), a tuple
+        with one entry per contact for others. A word without events may have one mode.
     alphabet : Alphabet
     """
 
@@ -77,7 +77,7 @@ class Word:
             Events, with or without blanks (``"LR"``, ``"RLtL"``, ``"ss"``), or the impact maps G_LR, G_RL, G_LL, G_RR as
             blank-separated pairs (``"LR RL"``), each starting at the wall where the one before ended.
         frictionless : bool
-            Read the word for a machine without friction: ``LL`` needs no turn then.
+            Read the word for a machine without friction, in which ``LL`` needs no turn.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class Word:
         text: str | Sequence[str] | Word,
         absent: frozenset[int] = frozenset(),
     ) -> Word:
-        """Read a word over any alphabet; see `orbits.words.alphabet.read`."""
+        """Read a word over any alphabet; `absent` are frictions whose limit is zero. See `orbits.words.alphabet.read`."""
         if isinstance(text, Word):
             if alphabet.alone is None or text.alphabet.without == alphabet.without:
                 return text
@@ -102,13 +102,13 @@ class Word:
 
     @classmethod
     def described(cls, about: Mapping[str, Any], alphabet: Alphabet | None = None) -> Word:
-        """The word that `describe` describes; without an alphabet, one of the shaken machines."""
+        """Return the word with this description (result of `describe`); default alphabet: that of the shaken machines."""
         modes = tuple(tuple(mode) if isinstance(mode, list) else mode for mode in about.get("modes", ()))
-        # files of version 0.1 keep no events for the absorber at rest
+        # files of version 0.1 have no entry "events" for the absorber at rest
         return cls(tuple(about.get("events", "")), modes, alphabet or shaken(bool(about.get("frictionless"))))
 
     def like(self, events: Sequence[str], modes: Sequence[Mode]) -> Word:
-        """A word over the same alphabet."""
+        """Return a word with other events and modes over the same alphabet."""
         return _word(tuple(events), tuple(modes), self.alphabet)
 
     # ------------------------------------------------------------------ facts
@@ -120,7 +120,7 @@ class Word:
 
     @cached_property
     def text(self) -> str:
-        """As it is written in studies: signs and modes (in brackets) appear only where the events leave them open."""
+        """The word as written in studies; signs and modes (in brackets) are written only if the events do not determine them."""
         if not self.modes:
             return ""
         turns = bool(self.events) and all(self.letter(i).kind == TURN for i in range(len(self)))
@@ -133,7 +133,7 @@ class Word:
                 again = self.over(alphabet, text, alphabet.absent_in(self.modes[0]))
                 places = range(len(self)) if turns and again.events == self.events else (0,)
                 if any(again.rotate(k) == self for k in places):
-                    return text  # the same cycle, even where the text leaves open from which event it is read
+                    return text  # the same cycle; with turns alone the reading may begin at a different event
         return (
             self._written(True)
             if alphabet.alone is not None
@@ -141,6 +141,7 @@ class Word:
         )
 
     def _written(self, signed: bool, noted: Sequence[int] = ()) -> str:
+        """Write the word, with signs of slips if `signed` and with modes after the events `noted`."""
         if not self.events:
             return bracket(self.entries(0), self.alphabet) if noted else ""
         parts: list[str] = []
@@ -161,16 +162,17 @@ class Word:
         return joint.join(parts)
 
     def spelled(self, mirror: bool = True) -> str:
-        """The word as printed: of the shaken machines one spelling for one motion, from whichever event and in whichever mirror image.
+        """Return the word as printed.
 
-        That of `canonical`, without signs where the letters alone mean this motion. Words of declared machines stand as they are read.
+        For the shaken machines all rotations of a word and (if `mirror`) its mirror image have one spelling: that of `canonical`, without signs
+        if the letters determine the motion. Words of declared machines are printed as they are.
         """
         if self.alphabet.alone is None:
             return self.text
         return _spelled(self.canonical(mirror), mirror, self.alphabet)
 
     def describe(self) -> dict[str, Any]:
-        """Events and modes, ready for JSON."""
+        """Return events and modes as a dict for JSON."""
         if self.alphabet.alone is None:
             return {"events": list(self.events), "modes": [list(mode) for mode in self.contact_modes]}
         return {
@@ -181,12 +183,12 @@ class Word:
 
     @property
     def frictionless(self) -> bool:
-        """Whether flights of a shaken machine may reverse freely, so that only impacts are events."""
+        """Whether the machine is a shaken one without friction, so that only impacts are events."""
         return bool(self.alphabet.without)
 
     @cached_property
     def codes(self) -> np.ndarray:
-        """Numbers of the events' letters, shape (n,), int8."""
+        """Codes of the events' letters, shape (n,), int8."""
         return np.array([self.alphabet.codes[letter] for letter in self.events], dtype=np.int8)
 
     @cached_property
@@ -196,24 +198,24 @@ class Word:
 
     @cached_property
     def impact_free(self) -> bool:
-        """Whether no wall is hit."""
+        """Whether the word has no impacts."""
         return self.impacts == 0
 
     def letter(self, place: int) -> Letter:
-        """The letter of an event."""
+        """Return the letter of an event; indices are cyclic."""
         return self.alphabet.letters[self.events[place % len(self.events)]]
 
     def mode(self, place: int) -> Mode:
-        """The mode after an event."""
+        """Return the mode after an event; indices are cyclic."""
         return self.modes[place % len(self.modes)]
 
     def entries(self, place: int) -> tuple[int, ...]:
-        """What every contact does after an event."""
+        """Return the entries of all contacts in the mode after an event."""
         return self.alphabet.entries(self.mode(place))
 
     @property
     def contact_modes(self) -> tuple[tuple[int, ...], ...]:
-        """What every contact does after each event."""
+        """Entries of all contacts in the mode after each event."""
         return tuple(map(self.alphabet.entries, self.modes))
 
     @cached_property
@@ -224,14 +226,14 @@ class Word:
 
     # ------------------------------------------------------------------ transformations
     def rotate(self, places: int) -> Word:
-        """The same cycle read from the event `places` further on."""
+        """Return the same cycle, beginning `places` events later."""
         if not self.events:
             return self
         k = places % len(self.events)
         return self.like(self.events[k:] + self.events[:k], self.modes[k:] + self.modes[:k])
 
     def mirror(self) -> Word:
-        """The word of the mirror image."""
+        """Return the word of the mirror image."""
         return self._image
 
     @cached_property
@@ -240,21 +242,21 @@ class Word:
         return self.like([images[text] for text in self.events], [mirrored(mode) for mode in self.modes])
 
     def repeat(self, times: int) -> Word:
-        """The word written `times` times."""
+        """Return the word repeated `times` times."""
         if times < 1:
             raise WordError(f"times = {times}: a word can be repeated 1, 2, ... times")
         return self.like(self.events * times, self.modes * times if self.events else self.modes)
 
     def double(self) -> Word:
-        """The word written twice, as after a period doubling."""
+        """Return the word repeated twice, as after a period doubling."""
         return self.repeat(2)
 
     def head(self, length: int) -> Word:
-        """The first `length` events; not a cycle of its own, but the half of a symmetric one."""
+        """Return the first `length` events; in general not a cycle, for example half of a symmetric one."""
         return self.like(self.events[:length], self.modes[:length] if self.events else self.modes)
 
     def with_image(self) -> Word:
-        """The word and, after it, its mirror image: the whole of a symmetric cycle from its half."""
+        """Return the word followed by its mirror image, which completes half of a symmetric cycle."""
         if not self.events:
             return self
         image = self.mirror()
@@ -262,22 +264,22 @@ class Word:
 
     @cached_property
     def repetitions(self) -> int:
-        """How often the primitive root is written in this word."""
+        """Number of repetitions of the primitive root in this word."""
         return power(list(zip(self.events, self.modes))) if self.events else 1
 
     def primitive_root(self) -> Word:
-        """The shortest word of which this one is a repetition."""
+        """Return the shortest word of which this one is a repetition."""
         return self.head(len(self.events) // self.repetitions)
 
     def canonical(self, mirror: bool = True) -> Word:
-        """The smallest of all rotations of the word, and of its mirror image if that is a motion of the machine, too."""
+        """Return the smallest of all rotations of the word and, if `mirror` and the machine has a mirror image, of its mirror image."""
         if not self.events and not self.modes:
             return self
         alphabet = self.alphabet
         return _canonical(self, mirror and alphabet.mirror is not None, alphabet)
 
     def _smallest_rotation(self) -> Word:
-        """The smallest rotation by its events, of those with equal events by its modes; no slip begins a word."""
+        """Return the smallest rotation by events, and among equal events by modes. (No slip is first, since its stick is smaller.)"""
         if not self.events:
             return self
         place, root = least_rotation(self.events), len(self.events) // power(self.events)
@@ -286,13 +288,13 @@ class Word:
         return self.rotate(place + root * least_rotation(blocks))
 
     def readings(self, mirror: bool = True) -> list[tuple[bool, int]]:
-        """(mirrored, rotation) of every way in which this word reads as its canonical form."""
+        """Return all pairs (mirrored, rotation) that transform this word to its canonical form."""
         alphabet = self.alphabet
         return _readings(self, mirror and alphabet.mirror is not None, alphabet)
 
     @cached_property
     def mirror_symmetric_halves(self) -> bool:
-        """Whether the second half is the mirror image of the first: the word a symmetric orbit can have."""
+        """Whether the second half is the mirror image of the first, which a symmetric orbit requires."""
         if self.alphabet.mirror is None:
             return False
         n = len(self.events)
@@ -303,7 +305,7 @@ class Word:
 
 @lru_cache(maxsize=4096)
 def _word(events: tuple[str, ...], modes: tuple[Mode, ...], alphabet: Alphabet) -> Word:
-    """A word, the same one every time: what is worked out of it is kept."""
+    """Return a cached word, so that its cached properties are computed once."""
     return Word(events, modes, alphabet)
 
 
@@ -341,14 +343,14 @@ class Margin:
     Attributes
     ----------
     kind : str
-        What is watched: ``flight`` (smallest relative speed inside it), ``wall`` (distance kept from the walls),
-        ``approach`` (impact speed), ``turn`` (excess of the shaking over friction), ``stick`` (reserve of friction),
-        ``slip`` (rate at which friction gives way), ``hold`` (time to the slip, or reserve until then), ``push`` (of a wall that holds),
-        ``switch`` (distance from its surface, or rate there) or ``duration``.
+        Quantity that must be positive: ``flight`` (smallest relative speed inside the flight), ``wall`` (smallest distance from the walls),
+        ``approach`` (impact speed), ``turn`` (excess of the force over friction), ``stick`` (reserve of friction when sticking begins),
+        ``slip`` (rate at which the force exceeds friction), ``hold`` (time to the slip, or reserve of friction until then), ``push`` (force of a
+        wall that holds), ``switch`` (distance from its surface inside a flight, or rate at a crossing) or ``duration`` (of the flight).
     segment : int
-        Index of the event it belongs to; a flight is counted with the event before it.
+        Index of the event to which the margin belongs; a flight belongs to the event before it.
     value : float
-        Positive when the orbit is real.
+        Positive on a real orbit.
     """
 
     kind: str
@@ -357,15 +359,15 @@ class Margin:
 
 
 def place_of(word: Word, index: int) -> tuple[int, int]:
-    """The event to which margin `index` belongs (without events the first node), and what it watches: a contact, or one of `Watch`."""
+    """Return the event to which margin `index` belongs (0 without events), and the index of its contact or one of `Watch`."""
     place, column = divmod(index, len(word.alphabet.columns))
     return place if len(word) else 0, word.alphabet.columns[column]
 
 
 def margin_name(word: Word, index: int) -> str:
-    """What margin `index` of an orbit with this word watches; see `Margin`."""
+    """Return the kind of margin `index` of an orbit with this word; see `Margin`."""
     if not word.modes:
-        return "stick"  # at rest: the reserve of friction
+        return "stick"  # the stuck absorber has the reserve of friction as its only margin
     place, watch = place_of(word, index)
     if watch == Watch.DURATION:
         return "duration"
@@ -375,7 +377,7 @@ def margin_name(word: Word, index: int) -> str:
 
 
 def border_kind(word: Word, index: int) -> str:
-    """The kind of border that is met where margin `index` vanishes."""
+    """Return the kind of border at which margin `index` vanishes."""
     name = margin_name(word, index)
     if name != "duration":
         return BORDERS[name]
@@ -386,14 +388,14 @@ def border_kind(word: Word, index: int) -> str:
 
 
 def approaches_of(word: Word, margins: np.ndarray) -> np.ndarray:
-    """The margins of the impacts, their speeds, from those of all events of a cycle, or of half of them."""
+    """Return the margins of the impacts (their speeds) among all margins of a cycle or of half of it."""
     columns = word.alphabet.columns
     own = margins[columns.index(Watch.STRENGTH) :: len(columns)] if len(word) else margins[:0]
     return own[[word.letter(i).kind == HIT for i in range(own.size)]]
 
 
 def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
-    """What margins of one are in a length and a rate, an entry per margin, or one for all."""
+    """Return the unit of each margin, given the units (length, rate in 1/time); one entry 1.0 if all are 1."""
     length, rate = units
     sizes = {
         "flight": length * rate,
@@ -411,7 +413,7 @@ def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
 
 
 def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
-    """The finite margins among `values` with their names."""
+    """Return the finite margins among `values` with their kinds and events."""
     return [
         Margin(margin_name(word, index), index // len(word.alphabet.columns), float(value))
         for index, value in enumerate(values)
@@ -420,7 +422,7 @@ def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
 
 
 def limits_of(multipliers: np.ndarray) -> np.ndarray:
-    """One-sided limits of multipliers at a border: infinite, of their sign, where they grow without bound, as at a graze."""
+    """Replace multipliers that grow without bound towards a border (as at a graze) by infinity with the same sign."""
     limits = np.array(multipliers, dtype=np.complex128)
     grown = np.abs(limits) >= 0.999 * UNBOUNDED
     for part in limits.view(np.float64).reshape(-1, 2).T:

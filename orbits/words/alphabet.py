@@ -1,20 +1,20 @@
-"""Alphabets: the letters of a set of contacts, their modes, and the mirror image of both; words as they are written over them.
+"""Alphabets: the letters of a set of contacts, their modes, their mirror images, and the reading of words.
 
-A mode says for every contact what it is doing between two events: a wall is free (0) or holds (1), a friction slides (-1, +1),
-sticks (0) or is absent (2), a switch has its sign. An event changes the mode of its own contact; an impact may also turn
+A mode has one entry for every contact between two events: a wall is free (0) or holds (1); a friction slides (-1, +1),
+sticks (0) or is absent (2); a switch has a sign (-1, +1). An event changes the entry of its own contact; an impact may also change
 the sign of a friction or of a switch.
 
-The shaken machines (`absorber`, `coupled`, `cavity`) have two walls and one friction, whose mode alone is written: the absorber slides
-towards the right wall (mode ``-``, w' < 0), towards the left wall (mode ``+``, w' > 0) or sticks to the cavity floor (mode ``0``).
+The shaken machines (`absorber`, `coupled`, `cavity`) have two walls and one friction. Only the friction's entry is written as mode: the absorber
+slides towards the right wall (``-``, w' < 0) or the left wall (``+``, w' > 0), or sticks to the cavity floor (``0``).
 
 ======  =====================================================  ==================
 letter  event                                                  next mode
 ======  =====================================================  ==================
 ``L``   impact on the left wall, w = +1, reached in ``+``      ``-``
 ``R``   impact on the right wall, w = -1, reached in ``-``     ``+``
-``t``   turn: w' = 0 while the shaking beats friction          the other sliding
+``t``   turn: w' = 0 while the force exceeds friction          the other sliding
 ``s``   stick: w' = 0 while friction holds                     ``0``
-``u``   slip: friction gives way                               ``-`` or ``+``
+``u``   slip: the force exceeds friction after a stick         ``-`` or ``+``
 ======  =====================================================  ==================
 """
 
@@ -37,13 +37,13 @@ from orbits.contacts.wall import FREE, WallLaw
 if TYPE_CHECKING:
     from orbits.contacts import Mode
 
-SHOWN = 60  # letters of a word in a message
+SHOWN = 60  # longest word that a message shows in full
 MARKS = {-1: "-", 0: "0", 1: "+", ABSENT: "f"}
 DOING = {-1: "sliding back", STUCK: "stuck", 1: "sliding on", None: "open"}
 
 
 class Watch(IntEnum):
-    """What a margin of an event watches, where it is no contact between events (those are 0, 1, ...)."""
+    """Margins that belong to an event or to the duration of a flight; margins of contacts inside a flight have the contact's index 0, 1, ..."""
 
     STRENGTH = -1
     DURATION = -2
@@ -51,28 +51,28 @@ class Watch(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Alphabet:
-    """The letters of a machine.
+    """The letters and modes of a machine.
 
     Attributes
     ----------
     contacts : tuple
         Laws of contact: walls, frictions, switches.
     mirror : dict of int to int, or None
-        Contact -> its mirror image.
+        Contact -> its mirror image; None if the machine is not symmetric.
     turned : frozenset of int
-        Switches whose sign the mirror turns.
+        Switches whose sign changes in the mirror image.
     flips : dict of (wall, contact) to int or None
-        Sign of a friction's velocity, or of a switch, after an impact (before it: the opposite); None: an impact may leave
-        either. A pair that is not listed: the impact does not touch it.
+        Sign of a friction's velocity, or of a switch, after an impact on the wall (before it: the opposite sign); None: both signs are
+        possible after the impact. The impact has no effect on pairs that are not listed.
     rides : frozenset of (switch, friction)
-        Switches whose surface moves with the velocity of a friction: it has an extreme wherever that one turns or sticks.
+        Switches whose surface moves with the velocity of a friction, so that it has an extremum wherever the friction turns or sticks.
     alone : int, optional
-        The contact whose mode alone is written; the others have one mode only. Left out: one entry per contact.
+        The only contact whose entry is written as mode, an int; default: a mode is a tuple with one entry per contact.
     without : frozenset of int
-        Frictions that are absent whatever the mode says (with `alone`).
+        Frictions that are absent in every mode (with `alone`).
     watched : tuple of int
-        What each of the margins per event watches: the index of a contact, in the flight after the event, or one of `Watch`. Left out: every
-        contact, the event's strength, the flight's duration.
+        The margins of each event, in order: the index of a contact, for its margin in the flight after the event, or one of `Watch`. Default:
+        all contacts, the strength of the event, the duration of the flight.
     """
 
     contacts: tuple[Any, ...]
@@ -86,28 +86,28 @@ class Alphabet:
 
     @cached_property
     def columns(self) -> tuple[int, ...]:
-        """`watched`, or what stands for it."""
+        """The margins of each event: `watched`, or its default."""
         return self.watched or (*range(len(self.contacts)), Watch.STRENGTH, Watch.DURATION)
 
     @cached_property
     def letters(self) -> dict[str, Letter]:
-        """By their text."""
+        """Text -> letter."""
         return {
             letter.text: letter for j, contact in enumerate(self.contacts) for letter in contact.events(j)
         }
 
     @cached_property
     def walled(self) -> bool:
-        """Whether there is a wall that can be hit."""
+        """Whether the machine has a wall with impacts."""
         return any(letter.kind == HIT for letter in self.letters.values())
 
     @cached_property
     def codes(self) -> dict[str, int]:
-        """Numbers of the letters, in kernels and in rows of events."""
+        """Text of a letter -> its code in kernels and in rows of events."""
         return {letter: code for code, letter in enumerate(self.letters)}
 
     def text_of(self, contact: int, kind: int, sign: int = 0) -> str:
-        """The letter's text."""
+        """Return the text of a letter, given its contact, kind and (for a switch) sign."""
         for letter in self.letters.values():
             if letter.contact == contact and letter.kind == kind and (kind != SWITCH or letter.sign == sign):
                 return letter.text
@@ -115,19 +115,19 @@ class Alphabet:
 
     # ------------------------------------------------------------------ modes
     def entry(self, mode: Mode, contact: int) -> int:
-        """What a contact does in a mode."""
+        """Return the entry of a contact in a mode."""
         if isinstance(mode, tuple):
             return mode[contact]
         return mode if contact == self.alone else FREE
 
     def entries(self, mode: Mode) -> tuple[int, ...]:
-        """What every contact does in a mode."""
+        """Return the entries of all contacts in a mode."""
         return (
             mode if isinstance(mode, tuple) else tuple(self.entry(mode, j) for j in range(len(self.contacts)))
         )
 
     def with_entry(self, mode: Mode, contact: int, value: int) -> Mode:
-        """The mode with another entry for one contact."""
+        """Return the mode with another entry for one contact."""
         if not isinstance(mode, tuple):
             return value if contact == self.alone else mode
         changed = list(mode)
@@ -135,15 +135,15 @@ class Alphabet:
         return tuple(changed)
 
     def absent(self, mode: Mode, contact: int) -> bool:
-        """Whether a friction's limit is zero in a mode."""
+        """Whether a friction is absent (has the limit zero) in a mode."""
         return contact in self.without or self.entry(mode, contact) == ABSENT
 
     def absent_in(self, mode: Mode) -> frozenset[int]:
-        """Frictions whose limit is zero in a mode."""
+        """Return the frictions that are absent (have the limit zero) in a mode."""
         return frozenset(j for j in range(len(self.contacts)) if self.entry(mode, j) == ABSENT)
 
     def after_impact(self, mode: Mode, wall: int) -> Mode:
-        """The mode after an impact in a flight with this mode, where it turns nothing that has events of its own."""
+        """Return the mode after an impact that changes only the signs of absent frictions."""
         for (other, contact), sign in self.flips.items():
             if other == wall and contact in self.without and sign is not None:
                 mode = self.with_entry(mode, contact, sign)
@@ -152,7 +152,7 @@ class Alphabet:
     # ------------------------------------------------------------------ mirror
     @cached_property
     def images(self) -> dict[str, str]:
-        """Letter -> its mirror image."""
+        """Text of a letter -> text of its mirror image."""
         assert self.mirror is not None
         return {
             text: self.text_of(
@@ -164,7 +164,7 @@ class Alphabet:
         }
 
     def mirrored_mode(self, mode: Mode) -> Mode:
-        """The mirror image of a mode."""
+        """Return the mirror image of a mode."""
         assert self.mirror is not None
         if not isinstance(mode, tuple):
             assert self.alone is not None
@@ -176,11 +176,11 @@ class Alphabet:
 
     # ------------------------------------------------------------------ pairs of events
     def touches(self, letter: Letter, contact: int) -> bool:
-        """Whether an event is one of a contact's, or an impact that changes its velocity or surface."""
+        """Whether an event belongs to a contact, or is an impact that changes the contact's velocity or surface."""
         return letter.contact == contact or (letter.contact, contact) in self.flips
 
     def together(self, here: Letter, there: Letter) -> str:
-        """The kind of border at which two consecutive events fall together."""
+        """Return the kind of border at which two consecutive events coincide."""
         if here.contact == there.contact:
             return self.contacts[here.contact].together(here.kind, there.kind)
         for one, other in ((here, there), (there, here)):
@@ -201,26 +201,26 @@ _SHAKEN: dict[str, Any] = {
     "alone": FLOOR,
 }
 SHAKEN = Alphabet(**_SHAKEN, watched=(FLOOR, Watch.STRENGTH, LEFT, Watch.DURATION))
-"""Of the machines with an absorber in a shaken cavity; one margin watches both walls."""
+"""Alphabet of the machines with an absorber in a shaken cavity; one margin is the distance from both walls."""
 FRICTIONLESS = Alphabet(
     **_SHAKEN, without=frozenset((FLOOR,)), watched=(LEFT, Watch.STRENGTH, LEFT, Watch.DURATION)
 )
-"""The same without friction: flights may reverse freely, and only impacts are events."""
+"""The same without friction: the velocity may change sign in flights, and only impacts are events."""
 
 LETTERS, CODES = "".join(SHAKEN.letters), SHAKEN.codes
 
 
 def shaken(frictionless: bool) -> Alphabet:
-    """The alphabet of a machine with a shaken cavity."""
+    """Return the alphabet of a machine with a shaken cavity."""
     return FRICTIONLESS if frictionless else SHAKEN
 
 
 class WordError(ValueError):
-    """A word whose events cannot follow one another."""
+    """A word with unknown letters or an impossible order of events."""
 
 
 def bracket(mode: Sequence[int], alphabet: Alphabet) -> str:
-    """A mode as it is written after an event."""
+    """Return a mode as written after an event, in brackets."""
     shown = [
         MARKS[value] if not isinstance(contact, WallLaw) else ("h" if value else "")
         for value, contact in zip(mode, alphabet.contacts)
@@ -233,17 +233,24 @@ def read(
     alphabet: Alphabet,
     absent: frozenset[int] = frozenset(),
 ) -> tuple[tuple[str, ...], tuple[Any, ...]]:
-    """Events and modes of a word.
+    """Read a word and return its events and modes.
 
     Parameters
     ----------
     text : str or sequence of str
-        Letters, with or without blanks. A stick may stand for itself and the slip after it; a slip's direction is written
-        ``s+`` or ``s-`` where it does not follow; ``[+0]`` after an event gives the modes of frictions and switches in the
-        order of the contacts. Of a shaken machine also the impact maps, as blank-separated pairs (``LR RL``).
+        Letters, with or without blanks. The slip after a stick may be omitted. The direction of a slip is written
+        ``s+`` or ``s-`` if the events do not determine it. ``[+0]`` after an event gives the entries of frictions and switches in the
+        order of the contacts. For a shaken machine also the impact maps, as blank-separated pairs (``LR RL``).
     alphabet : Alphabet
     absent : set of int
         Frictions whose limit is zero.
+
+    Returns
+    -------
+    tuple of str
+        Events, with all slips.
+    tuple
+        Mode after each event; without events one mode, or none for a shaken machine.
 
     Raises
     ------
@@ -279,7 +286,7 @@ def read(
 
 
 def _from_maps(source: str, alphabet: Alphabet) -> str:
-    """Events from the maps between impacts, such as ``G_LR G_RL``, each of which starts at the wall where the one before ended."""
+    """Convert maps between impacts, such as ``G_LR G_RL``, to events; other text is returned without blanks and commas changed to blanks."""
     tokens = [token.removeprefix("G_") for token in source.replace(",", " ").split()]
     maps = len(tokens) > 1 and all(re.fullmatch("[LR]{2}", token) for token in tokens)
     if not maps or any(one[1] != other[0] for one, other in zip(tokens, tokens[1:] + tokens[:1])):
@@ -291,7 +298,7 @@ def _from_maps(source: str, alphabet: Alphabet) -> str:
 def _items(
     source: str, alphabet: Alphabet, shown: str
 ) -> tuple[list[tuple[str, str | None, str | None]], str]:
-    """Letters with their signs and modes; and a mode that stands alone."""
+    """Split a text into letters with their signs and modes; also return a mode that is written without an event."""
     letters = alphabet.letters
     tokens = "|".join(map(re.escape, sorted(letters, key=len, reverse=True))) or "(?!)"
     pattern = re.compile(rf"\s*(?:({tokens})([+-]?)(\[[^\]]*\])?|(\[[^\]]*\]))\s*")
@@ -316,7 +323,7 @@ def _items(
 
 
 def _slips_later(items: Sequence[Any], place: int, letters: Mapping[str, Letter]) -> bool:
-    """Whether the next event of a stick's friction is a slip that is written out."""
+    """Whether the next event of the friction that sticks at `place` is a slip."""
     own = letters[items[place][0]].contact
     for step in range(1, len(items)):
         other = letters[items[(place + step) % len(items)][0]]
@@ -326,6 +333,7 @@ def _slips_later(items: Sequence[Any], place: int, letters: Mapping[str, Letter]
 
 
 def _mode_of(note: str, alphabet: Alphabet, shown: str) -> tuple[int, ...]:
+    """Read a mode in brackets."""
     marks = list(note[1:-1])
     values = {mark: value for value, mark in MARKS.items()}
     mode = []
@@ -347,6 +355,7 @@ def _mode_of(note: str, alphabet: Alphabet, shown: str) -> tuple[int, ...]:
 
 
 def _open(alphabet: Alphabet, absent: frozenset[int]) -> tuple[int, ...]:
+    """Default mode of a word without events: walls free, frictions sticking, switches positive."""
     mode = []
     for j, contact in enumerate(alphabet.contacts):
         if isinstance(contact, WallLaw):
@@ -365,7 +374,7 @@ def _modes(
     fixed: Mapping[int, tuple[int, ...]],
     shown: str,
 ) -> tuple[Any, ...]:
-    """The mode after each event; what nothing fixes becomes a reversal at a slip, else the law's usual one."""
+    """Return the mode after each event; a direction that the events do not determine is a reversal at a slip, else the default of the law."""
     letters = [alphabet.letters[text] for text, _ in items]
     signs = [{"+": 1, "-": -1, None: None}[sign] for _, sign in items]
     columns = []
@@ -410,7 +419,7 @@ def _directions(
     noted: Mapping[int, int],
     shown: str,
 ) -> list[int]:
-    """The mode of friction j after each event: its law says it for the events that it notices, between them it stays."""
+    """Return the entry of friction j after each event: its law computes it for events that affect it; between these it stays the same."""
     friction: FrictionLaw = alphabet.contacts[j]
     places = [i for i, letter in enumerate(letters) if alphabet.touches(letter, j)]
     if not places:
