@@ -1,8 +1,8 @@
-"""A machine whose parameters are physical quantities: kilograms, millimetres and hertz outside, its own numbers inside.
+"""Built-in machines with physical quantities as parameters: kilograms, millimetres and hertz outside, dimensionless numbers inside.
 
-The maps, the simulator and all else read the machine's dimensionless numbers, to whose vector the scales are appended. What varies is
-a quantity, counted in the unit in which it was given; it may move several numbers (`orbits.machines.parameters`). Measures are
-multiplied by what one dimensionless unit is.
+Equations and simulator use the machine's dimensionless numbers; the scales are appended to the parameter vector. The varying parameter is
+a quantity in the unit in which it was given, and may change several numbers (`orbits.machines.parameters`). Measures are multiplied by the
+size of one dimensionless unit.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ CONTACT = Quantity("contact_time", "s", "1 ms", {}, (1e-7, 1.0), "the duration o
 
 
 def tables(model: type[Model]) -> Table:
-    """The quantities of a machine.
+    """Return the quantities of a machine.
 
     Raises
     ------
@@ -42,26 +42,26 @@ def tables(model: type[Model]) -> Table:
 
 
 def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Physical:
-    """The machine called `name` with these quantities.
+    """Return the machine called `name` with these quantities.
 
     Parameters
     ----------
     name : str
-        As in studies.
+        Name in studies.
     given : mapping
         Quantities as text, ``{"half_width": "15 mm", ...}``; those without a unit may be numbers.
     unusual : bool
-        Allow values that no machine of the kind has.
+        Allow values far from those of real machines.
 
     Returns
     -------
     Model
-        Of the class that `name` stands for; its quantities in `amounts` are counted in the units that were used.
+        Of the class for `name`; its quantities in `amounts` have the units in which they were given.
 
     Raises
     ------
     QuantityError
-        If a quantity is unknown, missing, of the wrong dimension, implausible, or said twice.
+        If a quantity is unknown, missing, of the wrong dimension, implausible, or given twice.
     """
     base = model_class(name)
     table = tables(base)
@@ -106,7 +106,7 @@ def _assembled(
     unusual: bool,
     contact_time: float | None,
 ) -> Physical:
-    """The machine with these quantities, each counted in a unit."""
+    """Return the machine with these quantities, each given in a unit."""
     said = tuple(counted[q.name][1] for q in chosen)
     sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, said)])
     basis = Basis(chosen, (*base.parameter_names, *tables(base).scales), sizes)
@@ -128,7 +128,7 @@ def _made(
     unusual: bool,
     contact_time: float | None,
 ) -> Physical:
-    """The machine with these numbers, and what was said of it."""
+    """Return the machine with these numbers, and a record of the given quantities."""
     cls = _class_of(base)
     own = cls.field_names()
     machine = cls(contact_time=contact_time, **{name: numbers[name] for name in numbers if name in own})
@@ -142,7 +142,7 @@ def _made(
 
 @cache
 def _class_of(base: type[Model]) -> type[Physical]:
-    """The machine's class with the scales among its fields."""
+    """Return the machine's class with the scales among its fields."""
     scales = tables(base).scales
     body: dict[str, Any] = {
         "__annotations__": dict.fromkeys(scales, float),
@@ -156,7 +156,7 @@ def _class_of(base: type[Model]) -> type[Physical]:
 
 
 class Physical(Model):
-    """What a physical machine does otherwise than the machine of numbers behind it; see the top of this file."""
+    """Base of machines with physical quantities: the methods that differ from the dimensionless machine; see the top of this file."""
 
     tables: ClassVar[Table]
     base: type[Model]
@@ -201,13 +201,13 @@ class Physical(Model):
         return {name: unit for name, unit in found.items() if unit}
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
-        """The quantities with their units, and the numbers behind them."""
+        """Return the quantities with their units, and the numbers behind them."""
         amounts = dict(zip(self.amount_names, (float(v) for v in self.amounts(params))))
         numbers = self.named(params)
         return {"parameters": amounts, "units": self.units, "numbers": numbers}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
-        """What one dimensionless unit of a kind of measure is, in the unit that is shown; params (..., P), result (...)."""
+        """Return one dimensionless unit of a kind of measure in the shown unit; params (..., P), result (...)."""
         quantity = self.tables.gauges.get(kind)
         if quantity is None:
             return 1.0
@@ -217,7 +217,7 @@ class Physical(Model):
         return np.prod(np.asarray(params, dtype=float) ** powers, axis=-1) / size
 
     def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
-        """What one of these coordinates is in the unit that is shown, and that unit."""
+        """Return the size of one of these coordinates in the shown unit, and this unit."""
         kinds = {name: "velocity" if name.endswith("_rate") else "length" for name in names}
         return {
             name: (float(self.gauge(kind, params)), units.unit_of(self.tables.gauges[kind]))
@@ -226,7 +226,7 @@ class Physical(Model):
 
     # ------------------------------------------------------------------ parameters
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """The parameter vector; text is a quantity (``frequency="7.9 Hz"``), a number one of the machine's own numbers."""
+        """Return the parameter vector; text is a quantity (``frequency="7.9 Hz"``), a number is one of the dimensionless numbers."""
         given = dict(values or {})
         told = [name for name in given if isinstance(given[name], str) and name in self.tables.quantities]
         if told:
@@ -234,13 +234,13 @@ class Physical(Model):
         return super().vector({**self.loose, **given})
 
     def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """`vector` with quantity `name` at `value`, counted in `units`."""
+        """Return `vector` with quantity `name` at `value`, in its unit in `units`."""
         params = self.vector(values)
         moved = along(self.path(name, params), params, value)
         return super().vector({**self.loose, **self.named(moved)})
 
     def check_value(self, name: str, value: float) -> None:
-        """Refuse a value of quantity `name`, counted in `units`, that it cannot have; of other names, one of the machine's own numbers."""
+        """Check a value of quantity `name`, in its unit in `units`; for other names, one of the dimensionless numbers."""
         quantity = self.tables.quantities.get(name)
         if quantity is None:
             super().check_value(name, value)
@@ -250,7 +250,7 @@ class Physical(Model):
         units.check_limits(quantity, value, unit, self.base.limits)
 
     def check_at(self, name: str, value: float) -> None:
-        """Refuse a value of quantity `name`, counted in `units`, that does not go with the others.
+        """Check that a value of quantity `name`, in its unit in `units`, is plausible together with the others.
 
         Raises
         ------
@@ -272,7 +272,7 @@ class Physical(Model):
         return f"{quantity.name} = 0 {self.units[quantity.name]}", f'{quantity.name} = "{quantity.example}"'
 
     def with_(self, **changes: str | float) -> Physical:
-        """The machine with other quantities, as text or as numbers counted in `units`."""
+        """Return the machine with other quantities, as text or as numbers in their units in `units`."""
         known = self.tables.quantities
         groups = {known[name].choice for name in changes if name in known}
         own = {
@@ -287,7 +287,7 @@ class Physical(Model):
         return physical(self.name, own | counted, self.unusual)
 
     def given_by(self, name: str) -> Physical:
-        """The same machine with quantity `name` in the place of the one that says the same.
+        """Return the same machine with quantity `name` in place of the equivalent one.
 
         Raises
         ------
@@ -316,11 +316,11 @@ class Physical(Model):
         return {name: units.text(value, self.units.get(name, "")) for name, value in values.items()}
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
-        """The machine's quantities as text, ready for JSON."""
+        """Return the machine's quantities as text, ready for JSON."""
         return {"name": self.name, "units": "si", "unusual": self.unusual, **self._texts}
 
     def changed(self, **values: object) -> Physical:
-        """The same machine with other values of its own numbers."""
+        """Return the same machine with other values of its dimensionless numbers."""
         numbers = self.named(self.vector(values))
         counts = self.basis.amounts_of(np.array([*numbers.values()]))
         return _made(self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time)
@@ -330,6 +330,6 @@ class Physical(Model):
 
 
 def physical_again(settings: Mapping[str, Any]) -> Physical:
-    """The machine with these settings, as files keep them."""
+    """Return the machine with these settings from a file."""
     values = {key: value for key, value in settings.items() if key not in ("name", "units", "unusual")}
     return physical(settings["name"], values, bool(settings.get("unusual", False)))

@@ -2,7 +2,7 @@
 
 The numbers of a machine and its scales (half-width b, rate omega_0, a mass) together are its *state*. A quantity is a constant times
 a product of powers of them, so the state follows from as many independent quantities: the exponents are those of the inverse
-matrix. The same matrix tells what one quantity moves while the others stay: each number goes like a power of it.
+matrix. The same matrix gives the effect of one quantity while the others are constant: each number is proportional to a power of it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from orbits.machines.parameters import ParameterError
 
 
 class QuantityError(ParameterError):
-    """A physical quantity without a sensible value; the sentence names it, its value and a way out."""
+    """An impossible value of a physical quantity; the message names quantity, value and remedy."""
 
 
 @dataclass(frozen=True)
@@ -29,22 +29,22 @@ class Quantity:
     ----------
     name : str
     unit : str
-        SI unit as pint reads it; "" for a plain number.
+        SI unit in pint's notation; "" for a plain number.
     example : str
         A typical value, in the usual unit.
     powers : mapping
-        Exponent of each number of the state in it.
+        Exponents of the numbers of the state.
     usual : (float, float)
-        Values [SI] of machines that people build; what lies outside is a slip of the pen.
+        Range [SI] of real machines; values outside are probably mistakes.
     meaning : str
     constant : float
-        The factor before the powers.
+        Factor of the product of powers.
     group : str
-        Quantities of one group say the same thing: one of them is given.
+        Quantities of one group are equivalent: one of them is given.
     zero : bool
-        Whether 0 makes sense.
+        Whether 0 is possible.
     default : str or float, optional
-        Where neither it nor another of its group is given.
+        Value if neither it nor another of its group is given.
     signed : bool
         Whether it may be negative.
     """
@@ -63,7 +63,7 @@ class Quantity:
 
     @property
     def choice(self) -> str:
-        """The group, or the quantity itself where it is alone."""
+        """The group, or the name if it has none."""
         return self.group or self.name
 
 
@@ -75,9 +75,9 @@ class Basis:
     ----------
     quantities : tuple of Quantity
     numbers : tuple of str
-        The state's numbers.
+        Names of the state's numbers.
     units : float array (Q,)
-        SI values of the units in which the quantities are counted.
+        SI values of the units of the quantities.
     """
 
     quantities: tuple[Quantity, ...]
@@ -96,33 +96,31 @@ class Basis:
 
     @cached_property
     def sizes(self) -> np.ndarray:
-        """What a quantity is where the product of powers is one, shape (Q,)."""
+        """Value of each quantity if the product of powers is one, shape (Q,)."""
         return np.array([quantity.constant for quantity in self.quantities]) / self.units
 
     @cached_property
     def usual(self) -> np.ndarray:
-        """Defaults that are numbers, else NaN, shape (Q,)."""
+        """Numeric defaults, else NaN, shape (Q,)."""
         return np.array([q.default if isinstance(q.default, float) else np.nan for q in self.quantities])
 
     @cached_property
     def law(self) -> np.ndarray:
         """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents; see `orbits.machines.parameters.products`."""
-        exponents = (
-            np.round(4.0 * np.linalg.inv(self.powers)) / 4.0 + 0.0
-        )  # they are halves and whole numbers
+        exponents = np.round(4.0 * np.linalg.inv(self.powers)) / 4.0 + 0.0  # exponents are integers or halves
         sizes = self.units / np.array([quantity.constant for quantity in self.quantities])
         return np.vstack([np.prod(sizes**exponents, axis=1), exponents.T])
 
     def amounts_of(self, numbers: np.ndarray) -> np.ndarray:
-        """The quantities, counted in their units, of numbers (..., P); shape (..., Q)."""
+        """Return the quantities, in their units, from numbers (..., P); shape (..., Q)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             found = self.sizes * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
-        # the ratio of two zeros is what it is without them
+        # a ratio of two zeros has its default
         return np.where(np.isnan(found), self.usual, found)
 
 
 def independent(quantities: Mapping[str, Quantity], given: Collection[str]) -> tuple[Quantity, ...]:
-    """One quantity of each group: the one that is given, else the first.
+    """Return one quantity of each group: the one that is given, else the first.
 
     Raises
     ------
@@ -143,7 +141,7 @@ def independent(quantities: Mapping[str, Quantity], given: Collection[str]) -> t
     return tuple(chosen.values())
 
 
-# what people call them elsewhere
+# other names in common use
 OTHERWISE = {
     "acceleration": "base_acceleration",
     "amplitude": "base_amplitude",
@@ -160,13 +158,13 @@ OTHERWISE = {
 
 
 def near_quantity(given: str, known: Collection[str]) -> str:
-    """ " (did you mean ...?)" where a quantity is called otherwise, or nearly so, else empty."""
+    """Return " (did you mean ...?)" if a quantity has another or a similar name, else an empty text."""
     other = OTHERWISE.get(given.lower())
     return f" (did you mean {other!r}?)" if other in known else did_you_mean(given, known)
 
 
 def gauges(mass: Mapping[str, float]) -> dict[str, Quantity]:
-    """What one dimensionless unit of each kind of measure is, in b, omega_0 and the absorber's mass.
+    """Return one dimensionless unit of each kind of measure, in b, omega_0 and the absorber's mass.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
-"""Quantities of the built-in machines in SI units, between which values they usually lie, and which of them do not go together.
+"""Quantities of the built-in machines in SI units, their usual ranges, and checks of their combinations.
 
-Shaken cavities (`absorber`, `cavity`): C = A/b, g~ = g/(b omega_0^2), Omega = 2 pi f/omega_0. There is no oscillator in them; its natural frequency only
-says what Omega = 1 means and may be left out. Energies are those of the absorber, per kilogram of it where its mass is not given. Of a cavity with
-unlike walls `restitution` and `friction` are those of both sides, the sides' own names tell them apart; distances of the walls are counted in
+Shaken cavities (`absorber`, `cavity`): C = A/b, g~ = g/(b omega_0^2), Omega = 2 pi f/omega_0. They have no oscillator; the natural frequency
+only defines Omega = 1 and may be left out. Energies are those of the absorber, per kilogram if its mass is not given. For a cavity with
+different walls `restitution` and `friction` are those of both sides, and each side has names of its own; distances of the walls are in
 half-widths, so that the half-width scales the whole cavity.
 
-The coupled machine: eps = m/M, lambda = c/(m omega_0), g~ = g/(b omega_0^2), G = E/(b eps), Omega = 2 pi f/omega_0. A force F sin(omega t) on the
-oscillator is a base that moves by F/k and pulls through the spring alone. Source: Youssef, Karoui, Leine, the model section.
+The coupled machine: eps = m/M, lambda = c/(m omega_0), g~ = g/(b omega_0^2), G = E/(b eps), Omega = 2 pi f/omega_0. A force F sin(omega t)
+on the oscillator is equivalent to a base that moves by F/k and acts through the spring alone. Source: Youssef, Karoui, Leine, the model
+section.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from dataclasses import dataclass, replace
 
 from orbits.machines.physical.quantities import Quantity, QuantityError, gauges
 
-# usual values; beyond them `unusual` has to be said
+# usual ranges; values outside need `unusual`
 _AMPLITUDE = (1e-9, 10.0)
 _FREQUENCY = (0.001, 100_000.0)
 _SHARE = (1e-6, 0.5)  # of the oscillator's mass, or of critical damping
@@ -39,9 +40,9 @@ class Table:
     scales : tuple of str
         b [m], omega_0 [rad/s] and a mass [kg].
     gauges : dict of str to Quantity
-        What one dimensionless unit of each kind of measure is.
+        One dimensionless unit of each kind of measure.
     completed : callable
-        The quantities [SI] that are given, with what follows from them; `QuantityError` where they contradict one another.
+        Given quantities [SI] -> the same with those that follow; raises `QuantityError` if they contradict one another.
     """
 
     quantities: dict[str, Quantity]
@@ -78,7 +79,7 @@ _SIDES = {"restitution": _RESTITUTION, "friction": _FRICTION}
 
 
 def _of_sides(both: Quantity) -> tuple[Quantity, ...]:
-    """One for both sides and how much larger it is on the right, or one for each side."""
+    """Return a quantity for both sides and the ratio right over left, or one quantity for each side."""
     name, (left, right) = both.name, (f"{both.name}_left", f"{both.name}_right")
     one, other = replace(both, powers={left: 1}, group=left), replace(both, powers={right: 1}, group=right)
     ratio = Quantity(f"{right}_over_left", "", "1", {right: 1, left: -1}, _RATIO, f"the ratio of the sides' {name}", group=right, default=1.0)
@@ -120,12 +121,12 @@ _COUPLED = _by_name(
 
 
 def _shaken(given: dict[str, float]) -> dict[str, float]:
-    """Omega = 1 where no natural frequency is given."""
+    """Set Omega = 1 if no natural frequency is given."""
     return {"natural_frequency": given["frequency"], **given} if "frequency" in given else given
 
 
 def _cavity(given: dict[str, float]) -> dict[str, float]:
-    """Not for both sides and for one of them, nor for one side only."""
+    """Check that a quantity is given either for both sides together or for each side."""
     for name in _SIDES:
         left, right, ratio = f"{name}_left", f"{name}_right", f"{name}_right_over_left"
         if name in given and right in given:
@@ -139,7 +140,7 @@ def _cavity(given: dict[str, float]) -> dict[str, float]:
 
 
 def _coupled(given: dict[str, float]) -> dict[str, float]:
-    """A force leaves the damper's share out, and the excitation is at resonance."""
+    """With a force, leave out the damper's share; without a frequency, excite at resonance."""
     found = dict(given)
     if "force_amplitude" in given:
         found.setdefault("excitation", 0.0)
@@ -167,23 +168,23 @@ TABLES = {
 """The table of each machine."""
 
 # ------------------------------------------------------------------ quantities that do not go together
-HEAVY, LIGHT = 0.5, 1e-5  # shares of the oscillator's mass beyond which an absorber is none
-FAST = 50.0  # ratio of the excitation's frequency to the natural one, or of that to it, beyond which one of them is a slip of the unit
-FASTEST = 500.0  # the same for ends of intervals, which may reach far
-STRONG = 20.0  # half-widths beyond which a base does not move
+HEAVY, LIGHT = 0.5, 1e-5  # plausible range of an absorber's mass over the oscillator's
+FAST = 50.0  # largest plausible ratio of excitation and natural frequency; beyond it a unit is probably wrong
+FASTEST = 500.0  # the same for ends of intervals
+STRONG = 20.0  # largest plausible motion of a base, in half-widths
 
 
 def check_ratios(numbers: Mapping[str, float], given: Mapping[str, str], wide: bool = False) -> None:
-    """Refuse quantities that do not go together.
+    """Check that quantities are plausible together.
 
     Parameters
     ----------
     numbers : mapping
-        The machine's own.
+        The machine's dimensionless numbers.
     given : mapping
-        How the quantities were given.
+        The quantities as they were given.
     wide : bool
-        Of the ends of an interval.
+        Whether they are ends of an interval, for which wider limits hold.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Quantities as text, read by pint: ``"15 mm"`` is 0.015 m, ``"8 Hz"`` a frequency and never a rate of 8 radians a second."""
+"""Quantities as text, read by pint: ``"15 mm"`` is 0.015 m, and ``"8 Hz"`` counts turns, never radians, per second."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _COMMA = re.compile(r"\s*[-+]?\d*,\d")
 
 @cache
 def registry() -> Any:
-    """pint's registry of units.
+    """Return pint's registry of units.
 
     Raises
     ------
@@ -57,26 +57,26 @@ def registry() -> Any:
         raise QuantityError(
             f"quantities with units are read by pint, which is not installed: {pip_install('units')}"
         ) from None
-    # nothing is kept on disk: pint's cache is read half written where two processes begin at once, and names the
-    # files of one installation
+    # without pint's cache on disk: two processes that start at once may read it half written, and it contains
+    # paths of one installation
     return pint.UnitRegistry()
 
 
 @cache
 def _in_base(unit: str) -> Any:
-    """One of a unit in base units, as pint counts it; None if it is none."""
+    """Return one of a unit in base units, as pint counts it; None if it is no unit."""
     units = registry()
     try:
         return units.Quantity(1.0, units.parse_units(unit)).to_base_units()
-    except Exception:  # pint refuses in many ways; which one does not matter
+    except Exception:  # pint raises many kinds of errors
         return None
 
 
 @cache
 def size(unit: str, kind: str) -> float | None:
-    """How many of the SI unit `kind` one `unit` is; None if it is something else.
+    """Return how many of the SI unit `kind` one `unit` is; None if the dimensions differ.
 
-    Radians are no number here: 1 rad/s is a frequency of 1/(2 pi) Hz.
+    Radians are not counted as pure numbers: 1 rad/s is a frequency of 1/(2 pi) Hz.
     """
     if unit == kind:
         return 1.0
@@ -89,7 +89,7 @@ def size(unit: str, kind: str) -> float | None:
 
 
 def in_si(unit: str) -> float:
-    """What one of a unit is in SI units, radians and all.
+    """Return one of a unit in SI units, with radians as pure numbers.
 
     Raises
     ------
@@ -103,13 +103,13 @@ def in_si(unit: str) -> float:
 
 
 def read(quantity: Quantity, value: object) -> tuple[float, str]:
-    """A quantity as a number and the unit in which it was given.
+    """Return a quantity as a number and the unit in which it was given.
 
     Parameters
     ----------
     quantity : Quantity
     value : str or number
-        ``"15 mm"``; a plain number only where the quantity has no unit.
+        ``"15 mm"``; a plain number only if the quantity has no unit.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def read(quantity: Quantity, value: object) -> tuple[float, str]:
 
 
 def number_and_unit(value: str) -> tuple[float, str]:
-    """A text such as ``"15 mm"`` apart; the unit may be missing.
+    """Split a text such as ``"15 mm"``; the unit may be missing.
 
     Raises
     ------
@@ -159,12 +159,12 @@ def number_and_unit(value: str) -> tuple[float, str]:
 
 
 def counted(name: str, value: str, own: str) -> float:
-    """A measure, or what an option says, given as text, ``"15 mm"``, counted in the unit in which it is shown.
+    """Return a measure or the value of an option, given as text, ``"15 mm"``, in the unit in which it is shown.
 
     Parameters
     ----------
     name : str
-        Of the measure or the option.
+        Name of the measure or the option.
     value : str
     own : str
         Its unit; "" for a plain number.
@@ -184,7 +184,7 @@ def counted(name: str, value: str, own: str) -> float:
 
 
 def _parsed(name: str, value: str, kind: str, otherwise: str, with_unit: str) -> tuple[float, str]:
-    """Number and unit of a text; the ways out where it is none, and where a unit of a kind is missing."""
+    """Return number and unit of a text; `otherwise` and `with_unit` are hints for errors (no number; unit of kind `kind` missing)."""
     match = _NUMBER.fullmatch(value)
     if match is None:
         what = "a number with a unit" if kind else "a number"
@@ -196,14 +196,14 @@ def _parsed(name: str, value: str, kind: str, otherwise: str, with_unit: str) ->
 
 
 def _many(quantity: Quantity, value: object) -> str:
-    """Where more than one value stands in a quantity's place: what says that it varies or is uncertain."""
+    """Return a hint on surveys if several values are given in a quantity's place, else an empty text."""
     if not (isinstance(value, list) or _SPREAD.search(str(value))):
         return ""
     return f"; several values, or a tolerance, go into [survey], as vary.{quantity.name} = {{ uniform = [from, to] }}"
 
 
 def _meant(unit: str, quantity: Quantity) -> str:
-    """ " (did you mean ...?)" where a usual unit differs in capitals or in one letter, else empty."""
+    """Return " (did you mean ...?)" if a usual unit differs in capitals or in one letter, else an empty text."""
     usual = [unit_of(quantity), *_USUAL.get(quantity.unit, ())]
     alike = [one for one in usual if one.lower() == unit.lower()]
     alike += [one for one in usual if len(one) == len(unit) > 1 and sum(map(str.__ne__, one, unit)) == 1]
@@ -217,30 +217,30 @@ def _with_article(kind: str) -> str:
 
 
 def unit_of(quantity: Quantity) -> str:
-    """The unit of its example: the one in which people speak of it."""
+    """Return the unit of the quantity's example: the usual one."""
     match = _NUMBER.fullmatch(str(quantity.example))
     return match[2] if match and quantity.unit else ""
 
 
 def si(quantity: Quantity, number: float, unit: str) -> float:
-    """The SI value of a number counted in `unit`."""
+    """Return the SI value of a number in `unit`."""
     factor = size(unit, quantity.unit) if unit else 1.0
     assert factor is not None
     return number * factor
 
 
 def text(value: float, unit: str) -> str | float:
-    """A value with its unit, as it is read."""
+    """Return a value with its unit, as `read` understands it."""
     return f"{value!r} {unit}" if unit else value
 
 
 def check_usual(quantity: Quantity, value: float, shown: str) -> None:
-    """Refuse values that no machine of the kind has.
+    """Check that a value is in the range of real machines.
 
     Raises
     ------
     QuantityError
-        With the values that machines have, and how to insist.
+        With this range, and the option that permits the value.
     """
     low, high = quantity.usual
     if (value == 0.0 and quantity.zero) or low <= value <= high:
@@ -254,7 +254,7 @@ def check_usual(quantity: Quantity, value: float, shown: str) -> None:
 
 
 def check_limits(quantity: Quantity, number: float, unit: str, limits: Mapping[str, Limits]) -> None:
-    """Refuse a number counted in `unit` that is impossible for the one number of the machine that the quantity is, if it is one.
+    """Check a number in `unit` against the limits of a dimensionless parameter, if the quantity is equal to that parameter.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""The native core once more in Python and numpy: what it is compared with, and what computes where it cannot be loaded."""
+"""The native core's functions in Python and numpy: a reference for tests, and a replacement if the core cannot be loaded."""

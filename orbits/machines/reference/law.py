@@ -1,11 +1,11 @@
 """The numbers of the equations of motion, from the parameters of each built-in machine.
 
-Between two events q1, the cavity, is a harmonic of the forcing and a damped oscillation of its own, and q2, the absorber, a parabola:
+Between two events q1, the cavity, is the sum of a harmonic of the forcing and a damped free oscillation, and q2, the absorber, a parabola:
 
     q1'' + drag q1' + q1 = e + eps drag-share - eps q2'',    q2'' = s friction + lean,    w = q1 - q2,    v = q1 + eps q2,
 
-where the cavity rides on an oscillator (`coupled`), counted from where both rest. A cavity that is shaken (`absorber`, `cavity`) is the same with
-eps = 0: q1 = v = C sin Psi whatever the absorber does, and q2 counted (1 + eps) times. So w'' = v'' - (1 + eps)(s friction + lean) for all.
+if the cavity is an oscillator (`coupled`); q1 and q2 count from rest. A shaken cavity (`absorber`, `cavity`) has the same equations with
+eps = 0: q1 = v = C sin Psi independent of the absorber, and q2 multiplied by (1 + eps). So w'' = v'' - (1 + eps)(s friction + lean) for all.
 
 Parameters may be numbers or arrays, real or complex (`orbits.machines.reference.maps` differentiates by complex steps).
 """
@@ -18,16 +18,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 Number = Any
-"""A number, or an array of them, real or complex: all that one formula is given are of one kind."""
+"""A number or an array, real or complex; all arguments of one formula have the same kind."""
 
 
 def where(condition: np.ndarray | bool, one: Number, other: Number) -> Number:
-    """numpy's ``where``, a number where all are numbers."""
+    """Return numpy's ``where``, as a number if all arguments are numbers."""
     return np.where(condition, one, other)[()]
 
 
 class Response(NamedTuple):
-    """The forced harmonic X sin Psi + Y cos Psi of q1, and decay rate and angular frequency of its own oscillation."""
+    """The forced harmonic X sin Psi + Y cos Psi of q1, and decay rate and angular frequency of its free oscillation."""
 
     X: Number
     Y: Number
@@ -36,7 +36,7 @@ class Response(NamedTuple):
 
 
 class Side(NamedTuple):
-    """One direction of sliding: the relative acceleration of friction, where the wall ahead is, counted in that direction, and its restitution."""
+    """One direction of sliding: relative acceleration of friction, position of the wall ahead (positive in that direction), its restitution."""
 
     friction: float
     reach: float
@@ -46,9 +46,24 @@ class Side(NamedTuple):
 class Law(NamedTuple):
     """The numbers of the equations of motion.
 
-    omega: the forcing's frequency. friction_left, friction_right: accelerations of q2 by friction while sliding to either wall; lean: by the
-    slope. Restitution and place of either wall. slide, stuck: response of q1 while the absorber slides and while it sticks. eps: the absorber's
-    share of the oscillator's mass. force, base: amplitudes of the excitation's sine, and of its cosine over that. drag: eps lambda.
+    Attributes
+    ----------
+    omega
+        Frequency of the forcing.
+    friction_left, friction_right, lean
+        Accelerations of q2: by friction while sliding to either wall, and by the slope.
+    restitution_left, restitution_right, left, right
+        Restitution and position of either wall.
+    slide, stuck : Response
+        Response of q1 while the absorber slides, and while it sticks.
+    eps
+        Mass ratio (0 for a shaken cavity).
+    force, base
+        Amplitude of the excitation's sine, and ratio of its cosine to the sine.
+    drag
+        eps lambda.
+    prescribed : bool
+        Whether the motion of the cavity is prescribed.
     """
 
     omega: Number
@@ -74,43 +89,43 @@ class Law(NamedTuple):
 
     @property
     def amplitude(self) -> Number:
-        """C, of a cavity that is shaken."""
+        """C, the amplitude of a shaken cavity."""
         return self.slide.X
 
     @property
     def pull_left(self) -> Number:
-        """q2'' while sliding to the left wall."""
+        """q2'' while the absorber slides to the left wall."""
         return self.friction_left + self.lean
 
     @property
     def pull_right(self) -> Number:
-        """q2'' while sliding to the right wall."""
+        """q2'' while the absorber slides to the right wall."""
         return self.lean - self.friction_right
 
     def side(self, s: float) -> Side:
-        """Sliding to the left wall (s > 0) or to the right one."""
+        """Return the direction of sliding to the left wall (s > 0) or to the right one."""
         if s > 0.0:
             return Side(self.whole * self.friction_left, self.left, self.restitution_left)
         return Side(self.whole * self.friction_right, -self.right, self.restitution_right)
 
     @property
     def frictionless(self) -> bool:
-        """Whether turns are no events."""
+        """Whether there is no friction, so that turns are no events."""
         return self.pull_left == self.pull_right
 
 
 def absorber(par: Sequence[Number]) -> Law:
-    """Amplitude, restitution, friction, gravity, mass ratio, frequency."""
+    """Return the law for amplitude, restitution, friction, gravity, mass ratio, frequency."""
     C, r, mu, g, eps, omega = par[:6]
     one = 1.0 + 0.0 * eps
     return cavity([C, r, r, mu, mu, g, eps, omega, 0.0 * eps, one, one])
 
 
 def cavity(par: Sequence[Number]) -> Law:
-    """Amplitude, restitutions, frictions, gravity, mass ratio, frequency, slope, distances of the walls."""
+    """Return the law for amplitude, restitutions, frictions, gravity, mass ratio, frequency, slope, distances of the walls."""
     C, r_left, r_right, mu_left, mu_right, g, eps, omega, slope, left, right = par[:11]
     whole, cosine, zero = 1.0 + eps, np.cos(slope), 0.0 * omega
-    free = Response(C, zero, zero, 1.0 * omega)  # it moves as prescribed, C sin Psi
+    free = Response(C, zero, zero, 1.0 * omega)  # prescribed motion C sin Psi
     return Law(
         omega, whole * mu_left * g * cosine, whole * mu_right * g * cosine, whole * g * np.sin(slope),
         r_left, r_right, left, -right, free, free, zero, zero, zero, zero, prescribed=True,
@@ -118,7 +133,7 @@ def cavity(par: Sequence[Number]) -> Law:
 
 
 def coupled(par: Sequence[Number]) -> Law:
-    """Forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation, slope."""
+    """Return the law for forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation, slope."""
     G, omega, damping, eps, r, mu, g, chi, slope = par[:9]
     a, drag, force = mu * g * np.cos(slope), eps * damping, eps * G
     one = 1.0 + 0.0 * eps
@@ -130,7 +145,7 @@ def coupled(par: Sequence[Number]) -> Law:
 
 
 def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: Number) -> Response:
-    """Of a mass to the moving base: infinite at an undamped resonance; beta is not a number where it is overdamped."""
+    """Return the response of a mass to the moving base: infinite at an undamped resonance; beta is NaN if it is overdamped."""
     drag, stiffness = damping * omega, 1.0 - mass * omega * omega
     scale = force / (stiffness * stiffness + drag * drag)
     X, Y = scale * (stiffness + chi * drag * drag), scale * drag * (chi * stiffness - 1.0)
@@ -149,5 +164,5 @@ def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: 
 LawOf = Callable[[Sequence[Number]], Law]
 """A machine's parameters in the order of its table -> the numbers of its equations."""
 DRIVEN = frozenset({"coupled"})
-"""Machines whose cavity rides on an oscillator."""
+"""Machines whose cavity is an oscillator."""
 LAWS: dict[str, LawOf] = {"absorber": absorber, "cavity": cavity, "coupled": coupled}

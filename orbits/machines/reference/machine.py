@@ -31,17 +31,17 @@ class Reference(Stepper):
         return reference, (self.name,)
 
     def law(self, params: np.ndarray) -> Law:
-        """The numbers of the equations of motion."""
+        """Return the numbers of the equations of motion."""
         with np.errstate(all="ignore"):
             return self.law_of([*np.asarray(params, dtype=float)])
 
     # ------------------------------------------------------------------ cycles
     def linearise(self, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
-        """Residuals and derivatives at the cycle `u`; see `orbits.machines.reference.maps.linearise`."""
+        """Write residuals and derivatives at the cycle `u`; see `orbits.machines.reference.maps.linearise`."""
         return maps.linearise(self.law_of, data, u, p, work)
 
     def margins(self, data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
-        """Margins of admissibility, four numbers per node, from the last `linearise`."""
+        """Write margins of admissibility, four numbers per node, from the last `linearise`."""
         margins.margins(self.law(work.numbers), data, u, work, out)
 
     # ------------------------------------------------------------------ simulation
@@ -65,7 +65,7 @@ class Reference(Stepper):
     ) -> tuple[int, int]:
         try:
             return Run(state, self.law(params)).advance(until, codes, modes, rows)
-        except (OverflowError, ValueError):  # of a number that is no longer finite
+        except (OverflowError, ValueError):  # from numbers that are no longer finite
             return 0, FAILED
 
     @np.errstate(all="ignore")
@@ -77,10 +77,11 @@ class Reference(Stepper):
 
     @np.errstate(all="ignore")
     def works(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
-        """Work of the excitation, of the damper and of friction inside pieces of segments; contract, item 5.
+        """Write works of excitation, damper and friction in pieces of flights; item 5 of `orbits.machines.stepping`.
 
-        Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way slid. Of a shaken cavity in its
-        own frame and per mass of the absorber: the integral of v'' w', no damper, and the friction's acceleration times the way slid.
+        On an oscillator, per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the sliding
+        distance. In a shaken cavity, in its own frame and per mass of the absorber: the integral of v'' w', no damper, and the friction's acceleration
+        times the sliding distance.
         """
         law = self.law(params)
         eps, omega = law.eps, law.omega
@@ -101,10 +102,10 @@ class Reference(Stepper):
             row[2] = (1.0 if law.prescribed else eps) * friction * abs(slid)
 
     def energies(self, states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
-        """Energy of states; contract, item 5.
+        """Write energies of states; item 5 of `orbits.machines.stepping`.
 
-        Kinetic and potential per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2 + eps g sin(slope) w; in a shaken cavity that of the relative motion
-        per mass of the absorber, w'^2/2 + b w.
+        On an oscillator kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2 + eps g sin(slope) w; in a shaken cavity that of
+        the relative motion per mass of the absorber, w'^2/2 + b w.
         """
         law = self.law(params)
         eps, lean, whole = law.eps, law.lean, law.whole
@@ -136,15 +137,15 @@ class Reference(Stepper):
 
 @cache
 def reference(name: str) -> Reference:
-    """The reference of the machine called `name`, made once."""
+    """Return the reference of the machine called `name`, made once."""
     return Reference(name)
 
 
 def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
-    """Instants and weights of an integral over a span of time, in which the forcing turns by `phase`.
+    """Return instants and weights of an integral over a span of time, in which the phase of the forcing grows by `phase`.
 
-    The integrands are sums of exponentials; the 16-point Gauss rule in pieces of at most a turn misses less than 1e-19 of a product of
-    two waves, cos 2 x there.
+    The integrands are sums of exponentials. The 16-point Gauss rule on pieces of at most one turn has an error below 1e-19 for a product of
+    two waves, cos 2 x.
     """
     pieces = int(max(phase, span) / (2.0 * math.pi)) + 1
     half = 0.5 * span / pieces

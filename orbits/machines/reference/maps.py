@@ -1,8 +1,8 @@
 """Elementary maps between consecutive events, with exact derivatives.
 
-A node is (Psi, B+) at an impact and (Psi, w) at a turn, stick or slip, followed by (v, v') where the cavity has a motion of its own; B = v' - w'. The
-map of a segment starts at node i, follows the closed form (`orbits.machines.reference.oscillation`) for d = (Psi_{i+1} - Psi_i)/Omega and compares with
-node i + 1:
+A node is (Psi, B+) at an impact and (Psi, w) at a turn, stick or slip, followed by (v, v') if the cavity is an oscillator; B = v' - w'. The
+map of a flight starts at node i, follows the closed form (`orbits.machines.reference.oscillation`) for d = (Psi_{i+1} - Psi_i)/Omega and
+compares the result with node i + 1:
 
 ===============  =================  =====================  ==========  ============
 arrival          row 0              row 1                  row 2       row 3
@@ -12,16 +12,17 @@ turn, stick      w'                 w - w_i+1              v - v_i+1   v' - v'_i
 slip             v'' - m a - b      w - w_i+1              v - v_i+1   v' - v'_i+1
 ===============  =================  =====================  ==========  ============
 
-(m the mode after the slip; from rest to rest row 0 is the mean of w'' over the flight, w'/d, so that no flight of no duration solves it). Of a shaken
-cavity the two rows of an impact change places, and with v' + r w' - B+ that of a slip changes its sign. For impacts that alternate these are the
-literature's G+_LR and G+_RL.
+Here m is the mode after the slip. From rest to rest row 0 is the mean of w'' over the flight, w'/d, so that a flight of zero duration is no
+solution. In a shaken cavity the two rows of an impact are exchanged, and v' + r w' - B+ and the row of a slip have the opposite sign. For
+alternating impacts these are the literature's G+_LR and G+_RL.
 
-**Derivatives** are complex steps: f(x + i h) = f(x) + i h f'(x) for a function that is analytic, exact but for rounding where h is far below it
-(Squire and Trapp, SIAM Review 40, 1998). One row of numbers for each direction, all segments at once.
+**Derivatives** are complex steps: f(x + i h) = f(x) + i h f'(x) for an analytic function, exact to roundoff for very small h
+(Squire and Trapp, SIAM Review 40, 1998). One row of numbers for each direction, all flights at once.
 
-**The pin.** Without impacts the absorber may be shifted as a whole, q2 -> q2 - delta with q1 untouched. A closed orbit of such a word is not isolated, and
-one equation is redundant (the absorber's total displacement): row 1 of the last flight is replaced by w_i + w_{i+1} = left + right, the mean position;
-`unpin` puts it back for the multipliers, one of which is then exactly +1. Half a word (twist = -1) needs no pin: its closure already centres the motion.
+**The pin.** Without impacts the absorber can be shifted as a whole, q2 -> q2 - delta with q1 unchanged. A closed orbit of such a word is not
+isolated, and one equation is redundant (the absorber's total displacement): row 1 of the last flight is replaced by
+w_i + w_{i+1} = left + right, the mean position. `unpin` restores it for the multipliers, one of which is then exactly +1. Half a word
+(twist = -1) needs no pin: its closure already centres the motion.
 """
 
 from __future__ import annotations
@@ -43,24 +44,24 @@ STICK, SLIP = CODES["s"], CODES["u"]
 
 
 def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
-    """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
+    """Compute residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
     Parameters
     ----------
     law_of : callable
-        The numbers of the equations from the machine's parameters.
+        The machine's parameters -> the numbers of the equations.
     data : CycleData
     u : float array (n L,)
         Nodes, node-major.
     p : float
-        Value of the parameter that varies; what it moves: `orbits.machines.parameters`.
+        Value of the varying parameter; for its effect see `orbits.machines.parameters`.
     work : Workspace
-        F, A, D, Q, the parameters and the sines and cosines are filled.
+        F, A, D, Q, the parameters and the sines and cosines are written.
 
     Returns
     -------
     float
-        Largest residual, infinity where the maps cannot be evaluated (undamped resonance, overdamped oscillator).
+        Largest residual; infinity if the maps cannot be evaluated (undamped resonance, overdamped oscillator).
     """
     F, A, D, Q, par = work.F, work.A, work.D, work.Q, work.numbers
     events, modes, twist = data.events, data.modes, data.twist
@@ -131,13 +132,13 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
 
 
 def last_flight(modes: np.ndarray) -> int:
-    """The last event that is followed by a flight."""
+    """Return the last event that is followed by a flight."""
     last = len(modes) - 1
     return last if modes[last] != 0 else last - 1
 
 
 def _pin(data: CycleData, u: np.ndarray, work: Workspace, middle: complex) -> float:
-    """Replace the displacement equation of the last flight by w_i + w_{i+1} = middle; returns what the mean position is off by."""
+    """Replace the displacement equation of the last flight by w_i + w_{i+1} = middle; return the error of the mean position."""
     F, A, D, Q = work.F, work.A, work.D, work.Q
     length, n = F.shape
     last = last_flight(data.modes)
@@ -151,7 +152,7 @@ def _pin(data: CycleData, u: np.ndarray, work: Workspace, middle: complex) -> fl
 
 
 def unpin(data: CycleData, work: Workspace) -> None:
-    """Put the displacement equation back, for the multipliers."""
+    """Restore the displacement equation, for the multipliers."""
     if data.pinned == 1:
         n, last = work.F.shape[1], last_flight(data.modes)
         work.A[last, 1], work.D[last, 1] = work.pin[:n], work.pin[n : 2 * n]

@@ -23,20 +23,20 @@ LEFT_IMPACT, TURN, STICK, SLIP = (CODES[letter] for letter in "Ltsu")
 
 
 def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
-    """Margins of admissibility, none negative for an orbit that a machine can follow.
+    """Write margins of admissibility, none negative for an orbit that a machine can follow.
 
-    `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads sines and cosines of the last `linearise` from
+    `out` has shape (4 L,), four numbers per node; infinity if there is nothing to test. Sines and cosines of the last `linearise` are read from
     `work`. All zeros are found by steps that cannot pass one (`orbits.machines.reference.oscillation.first_zero`).
 
-    0. The flight after the node. Sliding: smallest s w' at an interior minimum. Without friction, where a flight may reverse: distance from the
-       walls at the zeros of w'. Stuck: smallest reserve of friction at an interior extremum of v''; of a shaken cavity the time to the slip, negative
-       unless it is the first time friction gives way.
+    0. The flight after the node. Sliding: smallest s w' at an interior minimum. Without friction, when flights may reverse: distance from the
+       walls at the zeros of w'. Stuck: smallest reserve of friction at an interior extremum of v''; in a shaken cavity the time to the slip,
+       negative unless the slip is the first instant at which friction yields.
     1. The event. Impact: approach speed. Turn: -s (v'' - b) - a with s the mode before and a of the direction after it, since the relative
-       acceleration v'' - b - a S cannot vanish for any S in [-1, 1] exactly when |v'' - b| > a. Stick: a - |v'' - b|. Slip: m v''' at its start, of a
-       shaken cavity per radian of the phase. Here neither friction nor gravity enters v'' = -q1 - eps lambda q1' + e + eps lambda e', and
+       acceleration v'' - b - a S cannot vanish for any S in [-1, 1] exactly if |v'' - b| > a. Stick: a - |v'' - b|. Slip: m v''' at its start,
+       in a shaken cavity per radian of the phase. Here v'' = -q1 - eps lambda q1' + e + eps lambda e' contains neither friction nor gravity, and
        b = (1 + eps) g sin(slope).
-    2. The wall: distance from it away from impacts.
-    3. The duration of the segment.
+    2. The wall: distance from it at events other than impacts.
+    3. The duration of the flight.
     """
     events, modes, twist, shaken = data.events, data.modes, data.twist, law.prescribed
     length, n = work.F.shape
@@ -44,7 +44,7 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
     b, friction = law.whole * law.lean, {s: law.side(s).friction for s in (1.0, -1.0)}
 
     def reserve(against: float) -> float:
-        """Friction left where it holds so much, of the two directions the nearer to slipping."""
+        """Return the friction left while it holds against this acceleration, in the direction nearer to slipping."""
         return min(friction[1.0] - against, friction[-1.0] + against)
 
     for i in range(length):
@@ -73,13 +73,15 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
                 flight = min(flight, reserve(law.whole * (at.h2 + at.z2) - b))
         elif not law.frictionless:
             tau, until = 0.0, d
-            if shaken:  # a slip starts at such a minimum, and the next one is a turn away; a turn or stick has none beside it
+            if shaken:  # a slip starts at such a minimum, and the next one is one turn later; near a turn or stick there is none
                 tau = (1.0 if event == SLIP else EVENTS.at_end if event >= TURN else 0.0) / law.omega
                 until -= (EVENTS.at_end if arrival >= TURN else 0.0) / law.omega
             elif event == SLIP:  # w' = w'' = 0 at the start of a slip: go as far as m w''' keeps its sign
                 bound = q.driven(4) + q.own(4, 0.0)
                 tau = min(abs(jerk) / bound, 0.5 * d) if bound > 0.0 else 0.0
-            if event != TURN or mode * against > friction[mode]:  # else the turn's own margin says it
+            if (
+                event != TURN or mode * against > friction[mode]
+            ):  # otherwise the turn's own margin is negative
                 lowest = [
                     mode * q.derivative(1, instant, sliding=True)[0]
                     for instant in q.zeros(2, tau, until, psi, sliding=True)
@@ -104,22 +106,25 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
             following, side = (i + 1) % length, 1.0 - 2.0 * float(arrival)
             if shaken:
                 rate = after(law, q, q.at(d), begin, mode, d).rate
-            else:  # the wall's reaction: w'+ = -r w'-, and B+ = v' - w'+
+            else:  # by Newton's law w'+ = -r w'-, and B+ = v' - w'+
                 told = nodes[following, 1] - nodes[following, 3]
                 rate = (1.0 if inner else twist) * told / law.side(side).restitution
             out[4 * following + 1] = side * rate
 
 
 def _late(law: Law, psi: float, d: float) -> float:
-    """Of a stick in a shaken cavity its duration, or how far in phase it does not end the first time that friction gives way."""
+    """Return the margin of a stick in a shaken cavity.
+
+    It is its duration if the slip is the first instant at which friction yields; otherwise minus the distance from that instant, in phase.
+    """
     peak, first = law.amplitude * law.omega * law.omega, np.inf
     for pull, base in ((law.pull_left, np.pi), (-law.pull_right, 0.0)):
         ratio = pull / peak if peak > 0.0 else np.inf
-        if ratio <= -1.0:  # it always gives way
+        if ratio <= -1.0:  # friction always yields
             return -1.0
         if ratio < 1.0:
             rest = (base + np.arcsin(ratio) - psi) % (2.0 * np.pi)
-            # rounding must not make a turn of an instant that is now
+            # an instant just before now must not become one a whole turn later by roundoff
             first = min(first, rest - 2.0 * np.pi if rest > 2.0 * np.pi - STEPPING.slip else rest)
     late = d * law.omega - first
     return -1.0 if first == np.inf else d if abs(late) < STEPPING.slip else -abs(late)

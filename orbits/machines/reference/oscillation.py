@@ -1,4 +1,4 @@
-"""The motion from a state on, in closed form, for numbers and for arrays of them; see :mod:`orbits.machines.reference.law`."""
+"""Closed forms of the motion after a state, for numbers and for arrays of them; see :mod:`orbits.machines.reference.law`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from orbits.machines.reference.law import Law, Number, Response, where
 from orbits.machines.stepping import MODE, PSI, RATE, V_RATE, V, W
 from orbits.settings import STEPPING
 
-NEAR = 0.03  # Taylor series to order 8 up to here: relative error below roundoff
+NEAR = 0.03  # longest time for Taylor series to order 8, with a relative error below roundoff
 
 
 class State(NamedTuple):
-    """Absorber in its cavity and centre of mass, with their rates."""
+    """Position of the absorber in its cavity, and centre of mass, with their rates."""
 
     w: Number
     rate: Number
@@ -26,7 +26,19 @@ class State(NamedTuple):
 
 
 class Point(NamedTuple):
-    """q1 and q1' less those at the start, the mean of q1'' since then; second and third derivatives of h and of z; the way less that at q1' of the start."""
+    """The motion of q1 at a time after the start.
+
+    Attributes
+    ----------
+    way, speed
+        q1 and q1' minus their values at the start.
+    mean
+        Mean of q1'' since the start.
+    h2, z2, h3, z3
+        Second and third derivatives of the harmonic h and the free oscillation z.
+    bend
+        `way` minus the displacement at the initial q1'.
+    """
 
     way: Number
     speed: Number
@@ -49,7 +61,7 @@ class Oscillation:
     h0, h1, z0, z1 : float
         Harmonic and free oscillation with their rates at the start.
     q2_rate, q2_pull : float
-        q2' at the start and q2'', which is constant (of no use while the absorber sticks).
+        q2' at the start and q2'', which is constant (not used while the absorber sticks).
     """
 
     omega: Number
@@ -68,7 +80,7 @@ class Oscillation:
         return self.alpha * self.alpha + self.beta * self.beta
 
     def derivatives(self) -> tuple[list[Number], list[Number]]:
-        """Of h and of z at the start, up to the eighth."""
+        """Return the derivatives of h and of z at the start, up to the eighth."""
         h, z = [self.h0, self.h1], [self.z0, self.z1]
         for _ in range(7):
             h.append(-self.omega * self.omega * h[-2])
@@ -76,11 +88,11 @@ class Oscillation:
         return h, z
 
     def at(self, tau: Number) -> Point:
-        """The motion after a time: from Taylor series close to the start, from the closed form beyond."""
+        """Return the motion after a time: from Taylor series near the start, from the closed form later."""
         if np.ndim(tau) == 0:
             return self._near(tau) if abs(tau) < NEAR else self._far(tau)
         near = np.abs(np.real(tau)) < NEAR
-        with np.errstate(divide="ignore", invalid="ignore"):  # beyond has no mean speed after no time
+        with np.errstate(divide="ignore", invalid="ignore"):  # the closed form has no mean for a time of zero
             far = self._far(tau)
         return Point(*(where(near, a, b) for a, b in zip(self._near(tau), far)))
 
@@ -108,29 +120,29 @@ class Oscillation:
         )  # fmt: skip
 
     def start(self) -> Point:
-        """The motion at the start."""
+        """Return the motion at the start."""
         h, z = self.derivatives()
         return Point(0.0, 0.0, h[2] + z[2], h[2], z[2], h[3], z[3], 0.0)
 
     def travel(self, tau: Number) -> Number:
-        """The way of q2 after a time."""
+        """Return the displacement of q2 after a time."""
         return (self.q2_rate + 0.5 * self.q2_pull * tau) * tau
 
     def fourth(self, at: Point) -> Number:
-        """The fourth derivative of q1."""
+        """Return the fourth derivative of q1."""
         return -self.omega * self.omega * at.h2 - 2.0 * self.alpha * at.z3 - self.kappa * at.z2
 
     def driven(self, order: int) -> float:
-        """Bound of the harmonic's derivative of this order."""
+        """Return a bound of the harmonic's derivative of this order."""
         return self.omega**order * np.hypot(self.h0, self.h1 / self.omega)
 
     def own(self, order: int, start: float) -> float:
-        """Bound of the free oscillation's derivative of this order from a time on."""
+        """Return a bound of the free oscillation's derivative of this order from a time on."""
         size = np.hypot(self.z0, (self.z1 + self.alpha * self.z0) / self.beta)
         return size * np.exp(-self.alpha * start) * self.kappa ** (0.5 * order)
 
     def derivative(self, order: int, tau: float, sliding: bool) -> tuple[float, float]:
-        """The derivative of this order, 1 to 3, of q1, or of w = q1 - q2 (`sliding`), after a time; and the next one."""
+        """Return a derivative (order 1 to 3) of q1, or of w = q1 - q2 if `sliding`, after a time; and the next derivative."""
         at = self.at(tau)
         rate, pull = (self.q2_rate + self.q2_pull * tau, self.q2_pull) if sliding else (0.0, 0.0)
         table = self.h1 + self.z1 + at.speed - rate, at.h2 + at.z2 - pull, at.h3 + at.z3, self.fourth(at)
@@ -139,7 +151,7 @@ class Oscillation:
     def zeros(
         self, order: int, start: float, end: float, phase: float = 0.0, sliding: bool = False
     ) -> Iterator[float]:
-        """Times in start < tau < end at which it vanishes, found by steps that cannot pass one; `phase`: where the motion began."""
+        """Yield the times in start < tau < end at which this derivative vanishes, by steps that cannot pass one; `phase` is that of the start."""
         drift = abs(self.q2_rate) + abs(self.q2_pull) * end if sliding and order == 1 else 0.0
         tiny = 2.0 * ROUNDOFF * (drift + 2.0 * self.driven(order) + 2.0 * self.own(order, 0.0))
 
@@ -155,7 +167,7 @@ class Oscillation:
 
 
 def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
-    """(f(t) - f(0))/t - f'(0) of the derivative `order`, from those above the next one."""
+    """Return (f(t) - f(0))/t - f'(0) for the derivative `order` of q1, from higher derivatives."""
     total = 0.0 * derivatives[order]
     for k in range(8, order + 1, -1):
         total = (derivatives[k] + total) * t / (k - order)
@@ -163,12 +175,12 @@ def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
 
 
 def chosen(s: Number, left: Number, right: Number, stuck: Number) -> Number:
-    """What belongs to sliding to the left wall (s > 0), to the right one, or to sticking."""
+    """Return the value for sliding to the left wall (s > 0), to the right one (s < 0), or for sticking."""
     return where(s > 0, left, where(s < 0, right, stuck))
 
 
 def leg(law: Law, psi: Number, x: State, s: Number) -> Oscillation:
-    """The closed form of the leg that begins with a state, in mode s."""
+    """Return the closed form of the flight that begins with a state, in mode s."""
     response = Response(*(chosen(s, a, a, b) for a, b in zip(law.slide, law.stuck)))
     X, Y, alpha, beta = response
     sine, cosine = np.sin(psi), np.cos(psi)
@@ -191,7 +203,7 @@ def after(
     t: Number,
     low: Number = 0.0,
 ) -> State:
-    """Where such a leg is after a time; `low`: digits of w below its roundoff."""
+    """Return the state after a time in this flight; `low` contains digits of w below its roundoff."""
     travel, fallen, sliding = q.travel(t), q.q2_pull * t, s != 0
     w, rate = x.w + (low + (x.rate * t + (p.bend - 0.5 * fallen * t))), x.rate + p.speed - fallen
     v, v_rate = x.v + p.way + law.eps * travel, x.v_rate + p.speed + law.eps * fallen
@@ -204,7 +216,7 @@ def after(
 
 
 def standing(state: np.ndarray, law: Law) -> State:
-    """What a stepper's state says of the motion."""
+    """Return absorber and centre of mass from a stepper's state."""
     if law.prescribed:
         v, v_rate = law.amplitude * np.sin(state[PSI]), law.amplitude * law.omega * np.cos(state[PSI])
     else:
@@ -213,13 +225,13 @@ def standing(state: np.ndarray, law: Law) -> State:
 
 
 def oscillation(state: np.ndarray, law: Law) -> Oscillation:
-    """The closed form of the leg that begins with a stepper's state."""
+    """Return the closed form of the flight that begins with a stepper's state."""
     x = standing(state, law)
     return leg(law, state[PSI], x if state[MODE] != 0.0 else x._replace(rate=0.0), state[MODE])
 
 
 def push(law: Law, x: State, sine: Number, cosine: Number) -> Number:
-    """v'', which neither friction nor the slope enters."""
+    """Return v'', which depends neither on friction nor on the slope."""
     if law.prescribed:
         return -law.omega * law.omega * (law.slide.X * sine + law.slide.Y * cosine)
     q1, q1_rate = (x.v + law.eps * x.w) / law.whole, (x.v_rate + law.eps * x.rate) / law.whole
@@ -227,7 +239,7 @@ def push(law: Law, x: State, sine: Number, cosine: Number) -> Number:
 
 
 def certain(y: float, slope: float, bound: float) -> float:
-    """Time for which y > 0 stays positive when abs(y'') <= bound: the zero of y + y' h - bound h^2/2."""
+    """Return a time for which y > 0 certainly stays positive if abs(y'') <= bound: the zero of y + y' h - bound h^2/2."""
     root = np.sqrt(slope * slope + 2.0 * bound * y)
     return (root + slope) / bound if slope > 0.0 else 2.0 * y / (root - slope)
 
@@ -240,11 +252,11 @@ def first_zero(
     tiny: float,
     phase: float = 0.0,
 ) -> float:
-    """First zero in start < tau < end of a number of which `look(tau)` is the value and the slope; `end` when there is none.
+    """Return the first zero in start < tau < end of a function; `end` if there is none.
 
-    With abs(y'') <= `bound`, steps of the length of `certain` approach a simple zero like Newton's method, from one side, and never jump over
-    one. A zero at `start` itself is not counted: the slope there tells for how long there is no other. `tiny` is the value's rounding, `phase`
-    where the motion began.
+    `look(tau)` returns its value and slope. With abs(y'') <= `bound`, steps of the length of `certain` approach a simple zero like Newton's
+    method, from one side, and never pass one. A zero at `start` itself is not counted; the slope there gives a time without another zero.
+    `tiny` is the value's roundoff, `phase` the phase at the start of the motion.
     """
     tau = start
     if bound <= SMALLEST:

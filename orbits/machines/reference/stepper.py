@@ -1,17 +1,18 @@
-"""Event-driven stepper of the built-in machines in plain Python: the reference of the native core (`native/shaken.hpp`, `native/coupled_simulation.hpp`).
+"""Event-driven stepper of the built-in machines in plain Python: reference of the native core (`native/shaken.hpp`, `native/coupled_simulation.hpp`).
 
 Between events the motion is the closed form of :mod:`orbits.machines.reference.oscillation`. In the direction s of the sliding let
-y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at least
+y = s w' > 0 and y' = s w''. With a bound M >= |w'''| of the further motion, y stays positive for at least
 
     h = 2 y / (sqrt(y'^2 + 2 M y) - y'),
 
-and w is monotone for as long as y is positive: inside such a step the wall ahead is met exactly when it has been passed at
-the end of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip
-is found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope and a that of friction in the direction of the slip.
+and w is monotone as long as y is positive: in such a step the wall ahead is hit exactly if it has been passed at
+the end of the step, and steps towards a turn approach it from one side like Newton's method. So no impact and no turn can be missed. The slip
+is found in the same way from a - |v'' - b| > 0, with the accelerations b of the slope and a of friction in the direction of the slip.
 
-M is the sum of the largest third derivatives of the forced harmonic and, from then on, of the free oscillation, which decays; it is renewed now and then.
+M is the sum of the largest third derivatives of the forced harmonic and of the remaining free oscillation, which decays; it is updated now
+and then.
 
-Close to the start of a leg differences are taken from the Taylor series, and positions are kept with the digits below
+Near the start of a flight differences are taken from the Taylor series, and positions are stored with digits below
 their roundoff, so that flights, turns and impacts keep their relative accuracy however small they are.
 The signatures are those of :mod:`orbits.machines.stepping`.
 """
@@ -55,12 +56,12 @@ from orbits.settings import EVENTS, STEPPING
 
 _L, _R, _T, _S, _U = range(5)
 EPSILON = float(np.finfo(float).eps)
-_HORIZON = 2.5  # M is renewed after this time
-_HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
+_HORIZON = 2.5  # time after which M is updated
+_HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # reasons for the end of a flight
 
 
 def wrap(angle):
-    """The angle reduced to [0, 2 pi), and the number of turns taken away."""
+    """Return the angle reduced to [0, 2 pi), and the number of turns removed."""
     turns = math.floor(angle / TWO_PI)
     if turns != 0.0:
         angle -= turns * TWO_PI
@@ -73,7 +74,7 @@ def wrap(angle):
 
 
 def shift(w, low, step):
-    """w + low + step as a sum of two floats (Knuth's two-sum)."""
+    """Return w + low + step as a sum of two floats (Knuth's two-sum)."""
     total = w + step
     virtual = total - w
     rest = (w - (total - virtual)) + (step - virtual) + low
@@ -82,13 +83,13 @@ def shift(w, low, step):
 
 
 def launch(law: Law, state: np.ndarray) -> None:
-    """Reduce the phase and set the mode of a start; contract, item 2."""
+    """Reduce the phase and set the mode of a start; item 2 of `orbits.machines.stepping`."""
     state[PSI], more = wrap(state[PSI])
     state[TURNS] += more
     x, sine, cosine = standing(state, law), math.sin(state[PSI]), math.cos(state[PSI])
     against = push(law, x, sine, cosine) - law.whole * law.lean  # friction
     undecided = law.frictionless and not law.prescribed
-    if against == 0.0 and undecided:  # the third derivative decides
+    if against == 0.0 and undecided:  # then the third derivative decides
         force = law.force * law.omega * (cosine - law.base * sine)
         against = force - x.v_rate / law.whole - law.drag * law.lean
     left, right = law.side(1.0), law.side(-1.0)
@@ -105,7 +106,7 @@ def launch(law: Law, state: np.ndarray) -> None:
 
 
 class _Sliding(NamedTuple):
-    """The end of a leg of sliding: how, after which time, y = s w' and y' there, the way s (w - w_0)."""
+    """The end of a sliding flight: reason and time, and there the motion of q1, y = s w', y', and the displacement s (w - w_0)."""
 
     outcome: int
     tau: float
@@ -116,13 +117,13 @@ class _Sliding(NamedTuple):
 
 
 class Run:
-    """A motion on its way."""
+    """A motion in progress."""
 
     def __init__(self, state: np.ndarray, law: Law) -> None:
         self.state, self.law = state, law
         self.sides = {s: law.side(s) for s in (1.0, -1.0)}
         self.b = law.whole * law.lean
-        # the speed of a shaken cavity is what others are compared with
+        # speeds are compared with that of a shaken cavity
         self.speed = law.amplitude * law.omega + abs(law.lean) / law.omega if law.prescribed else 1.0
 
     def advance(
@@ -134,8 +135,8 @@ class Run:
         ).all():
             return 0, FAILED
         limit = min(until, state[TURNS] + STEPPING.forever)
-        fresh = False  # the leg starts with a slip: w' = w'' = 0
-        idle = 0  # legs in a row without progress
+        fresh = False  # whether the flight starts with a slip: w' = w'' = 0
+        idle = 0  # consecutive flights without progress
         count = 0
 
         def add(code: int, before: float, after: float) -> None:
@@ -199,7 +200,7 @@ class Run:
                 status = REST if end.outcome == _NEVER else TIME_REACHED
                 break
             state[RATE] = 0.0
-            if law.frictionless:  # nothing happens where w' passes zero
+            if law.frictionless:  # a zero of w' is no event
                 state[MODE] = -s
                 continue
             turns_back = end.y_rate < -(ahead.friction + behind.friction)
@@ -208,9 +209,9 @@ class Run:
         return count, status if np.isfinite(state).all() else FAILED
 
     def _piles_up(self, behind: Side, s: float, Y0: float, push: float, begin: Point) -> float:
-        """The time that is left of a chatter, of which this leg from a wall that is pushed after the absorber is the tail; infinite if it is none.
+        """Return the remaining time of a chatter if this flight belongs to its end; otherwise infinity.
 
-        `push`: s (v'' - b).
+        The flight leaves a wall that is pushed after the absorber; `push` is s (v'' - b).
         """
         state, law = self.state, self.law
         back, brake = -push - behind.friction, -push + self.sides[s].friction
@@ -232,7 +233,7 @@ class Run:
         return rest if law.prescribed and not still else min(rest, longest)
 
     def _ride(self, way: float, speed: float) -> None:
-        """Move the centre of mass on, of a cavity that has a motion of its own."""
+        """Move the centre of mass on, if the cavity is an oscillator."""
         if not self.law.prescribed:
             self.state[V] += way
             self.state[V_RATE] += speed
@@ -243,7 +244,7 @@ class Run:
         self.state[TURNS] += more
 
     def _wait(self, left: float) -> tuple[int, float]:
-        """Move on, sticking, until friction no longer holds, or for the time `left`; how this ends, and the direction of the slip."""
+        """Move on, sticking, until friction yields, or for the time `left`; return the reason for the end, and the direction of the slip."""
         q, whole = oscillation(self.state, self.law), self.law.whole
         outcome, tau, way = self._until_slip(q, left)
         if tau > 0.0:
@@ -255,7 +256,7 @@ class Run:
 
     def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, float]:
         b, whole = self.b, self.law.whole
-        # directions in which there is room, and what holds the absorber there
+        # directions without a wall, and the friction in each
         free_ways = [
             (way, side.friction) for way, side in self.sides.items() if way * self.state[W] < side.reach
         ]
@@ -273,7 +274,7 @@ class Run:
                     return a - way * (whole * (at.h2 + at.z2) - b), -way * whole * (at.h3 + at.z3)
 
                 value, slope = reserve(tau)
-                # a zero right at the start is judged by its slope, and left behind
+                # at a zero at the start the slope decides
                 now = value <= tiny and (tau > 0.0 or slope < 0.0 or value < -tiny)
                 slips.append((tau if now else first_zero(reserve, tau, end, bound, tiny), way))
             slip, way = min(slips)
@@ -300,28 +301,24 @@ class Run:
                 bound = q.driven(3) + q.own(3, tau)
                 renew = tau + _HORIZON
             if y <= SMALLEST:
-                # the native core of coupled machines takes a speed that hardly is one for rest
+                # the native core of coupled machines treats a tiny speed as rest
                 if tau > 0.0 or (self.law.prescribed and y > 0.0 > y_rate):
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
-                # from rest: y' or, after a slip, y'' opens the flight
+                # from rest: the flight begins with y' or, after a slip, with y''
                 jerk = s * (at.h3 + at.z3)
                 further = q.driven(4) + q.own(4, tau)
-                if (
-                    bound == 0.0 and further == 0.0 and not y_rate > 0.0
-                ):  # neither friction, slope nor forcing
+                if bound == 0.0 and further == 0.0 and not y_rate > 0.0:  # no friction, slope or forcing
                     return _Sliding(_NEVER, left, at, y, y_rate, gain)
                 steps = (
                     y_rate / bound if bound > 0.0 else 0.0,
                     1.5 * jerk / further if further > 0.0 else 0.0,
                 )
-                step = max(
-                    *steps, EVENTS.zero
-                )  # at least where there is hardly any acceleration in this direction
+                step = max(*steps, EVENTS.zero)  # a minimum, if the acceleration in this direction is tiny
             else:
                 step = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else math.inf
                 if step < ROUNDOFF * tau:
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
-                step = min(step, 2.0 * target / y + 0.5)  # no further beyond the wall
+                step = min(step, 2.0 * target / y + 0.5)  # not far beyond the wall
             before = tau
             tau = min(tau + step if step < renew - tau else renew, left)
             at, y, y_rate, gain = look(tau)
@@ -335,7 +332,7 @@ class Run:
 
         tau = root_scalar(miss, bracket=(before, tau), xtol=SMALLEST, rtol=4.0 * EPSILON).root
         at, y, y_rate, gain = look(tau)
-        step = (gain - target) / y if y > 0.0 else 0.0  # one Newton step more, from values at hand
+        step = (gain - target) / y if y > 0.0 else 0.0  # one more Newton step, from known values
         if abs(step) < 8.0 * EPSILON * tau:
             tau -= step
             y -= step * y_rate
