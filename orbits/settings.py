@@ -122,7 +122,7 @@ class Bordering:
     shown : float
         Margins below this may be zero: their signs are determined further away.
     unresolved : float
-        Speed after an impact below which margins do not decide, because its square is roundoff.
+        Speed after an impact below which the next events cannot be resolved, because its square is roundoff.
     slow : float
         Speeds of impacts, or distances of turns from a wall, below this show an accumulation of impacts.
     placed : float
@@ -208,7 +208,7 @@ class Simulating:
     at_once : float
         Phase from a touch to the stick that follows it.
     late : float
-        Share of the time for which motions are followed; motions that recur later than this count like those that do not recur.
+        Share of the time for which a chaotic motion was followed; motions that settled later than this ended a chaotic transient.
     lives : float
         Mean lives of a chaotic transient for which a motion is followed that may still settle.
     peak : float
@@ -262,7 +262,7 @@ class Replaying:
     beside_folds, shrunk : tuple of float, float
         Distances of starts near folds, and the share of them that may remain.
     forgotten : float
-        Share of a displacement that remains at the second measurement.
+        Share of a displacement that remains when its decay is measured.
     loss : float
         Distance from the orbit at which a simulation no longer follows it.
     rounding : float

@@ -22,7 +22,7 @@ LARGEST_PRODUCT = 64  # largest integer power written as products
 
 
 class NotAnalytic(TypeError):
-    """A formula of a machine file applies an operation to a symbol, such as a comparison, that is no single analytic expression."""
+    """A formula of a machine file applies an operation to a symbol that is not analytic, for example a comparison."""
 
 
 def _refuse(what: str) -> NoReturn:

@@ -1,6 +1,6 @@
-"""What solvers and simulators need to know about the motion between two events: the protocols `Flow` and `Simulator`.
+"""The protocols `Flow` and `Simulator`: the motion of a machine between two events, for solving and for simulation.
 
-Built-in machines fulfil them with closed forms (`orbits.flows.native`), declared machines with integrated flights (`orbits.flows.page`).
+Built-in machines implement them with closed forms (`orbits.flows.native`), declared machines with integrated flights (`orbits.flows.page`).
 
 Terms
 -----
@@ -512,7 +512,7 @@ class Flow(Protocol[ModelOf]):
         """Return the coordinates of a forced motion at phases from 0 on, shape (m, d)."""
         whole, first = TWO_PI * motion.periods, motion.nodes[0, 0]
         wanted = (phases - first) % whole
-        wanted[wanted >= whole] = 0.0  # of a phase just below zero
+        wanted[wanted >= whole] = 0.0  # for a phase just below zero
         begins = np.maximum.accumulate(motion.nodes[:, 0] - first)
         places = np.searchsorted(begins, wanted, side="right") - 1
         return self.flown(motion, places, wanted - begins[places])

@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from orbits.symbols import Plain
 
 Element = Mapping[str, float]
-FIELDS: dict[str, dict[str, float | None]] = {  # of each kind of element; None: must be given
+FIELDS: dict[
+    str, dict[str, float | None]
+] = {  # fields of each kind of element with defaults; None: must be given
     "force": {"at": None, "amplitude": None, "shift": 0.0, "harmonic": 1.0},
     "wall": {
         "at": None,

@@ -373,7 +373,7 @@ def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: i
     A motion without impacts creeps if it recurs after some periods except for a small displacement along the cavity. This happens if
     friction holds less in one direction than in the other (on a slope, for example): the absorber slips a little further in every period.
     As long as the cavity moves as prescribed, all places between the walls are equivalent and each displacement is the same. So the motion may
-    be moved on by as many displacements as there is space for: only at the wall is decided on what it settles.
+    be moved on by as many displacements as there is space for: the attractor is decided only at the wall.
 
     Parameters
     ----------

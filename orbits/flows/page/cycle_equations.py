@@ -123,7 +123,7 @@ def multipliers(data: Pieces, work: Work) -> np.ndarray:
     values = values[np.argsort(-np.abs(values), kind="stable")]
     for _ in range(
         data.trivial
-    ):  # trivial ones: of motions that can be shifted as a whole, and of frictions that stick for ever
+    ):  # trivial multipliers of motions that can be shifted as a whole, and of frictions that stick for ever
         values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
     return values[: data.n_multipliers]
 
@@ -209,7 +209,7 @@ class PageKernels(PlainKernels[Pieces, Work]):
             derivative[-1, 1 + j] = 0.0
         for j in data.resting:
             residual[-1, 1 + j] = derivative[-1, 1 + j] = 0.0
-        for row, values in data.still:  # of a friction that sticks for ever: require zero velocity
+        for row, values in data.still:  # for a friction that sticks for ever: require zero velocity
             table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
             residual[-1, 1 + row], derivative[-1, 1 + row] = table[0], table[n + 2]
             work.still[row, 0], work.still[row, 1:] = table[n + 1], table[1 : n + 1]

@@ -156,4 +156,4 @@ UNITS = {
     "impact_rate": "Hz", "impulse": "N s", "impact_energy": "J", "impact_loss": "J", "friction_loss": "J", "mean_force": "N",
     "work_rate": "W", "peak_force": "N",
 }  # fmt: skip
-"""Of these measures; that of ``impulse_R`` is that of ``impulse``."""
+"""Units of these measures; ``impulse_R`` has that of ``impulse``."""
