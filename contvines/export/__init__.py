@@ -1,4 +1,4 @@
-"""Results for other programs: files, columns for tables, standard JSON."""
+"""Export of results to other programs: files, tables, standard JSON."""
 
 from .files import ENDINGS, FORMATS, check_target, export, json_text
 

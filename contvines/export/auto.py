@@ -1,7 +1,7 @@
-"""A graph as files of AUTO-07p, b.NAME (branches), s.NAME (labelled solutions) and d.NAME (what the labels mean), and as a diagram of XPPAUT.
+"""Export of a graph as files of AUTO-07p, b.NAME (branches), s.NAME (labelled solutions) and d.NAME (meaning of the labels), and of XPPAUT.
 
-The formats are those of AUTO-07p's manual (E. J. Doedel and others, section "Output files"): fixed columns of 19 letters; and of the points that
-XPPAUT's window "AUTO" writes with `Write pts`.
+The formats are those of AUTO-07p's manual (E. J. Doedel and others, section "Output files"), with fixed columns of 19 characters, and
+that of the points which XPPAUT's window "AUTO" writes by `Write pts`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 TYPES = {"fold": 2, "branch-point": 1, "symmetry-breaking": 1, "hopf": 3}
-"""AUTO's number of a kind of special point of an equilibrium, or of a cycle of a map."""
+"""AUTO's type numbers of special points of equilibria and of cycles of maps, by kind."""
 TYPES_OF_CYCLES = {
     "fold": 5,
     "branch-point": 6,
@@ -32,22 +32,22 @@ TYPES_OF_CYCLES = {
     "period-doubling": 7,
     "neimark-sacker": 8,
 }
-"""AUTO's number of a kind of special point of a cycle."""
-END, USER = 9, -4
-WIDTH = 19  # letters of a column
-PERIOD = 11  # AUTO's place of the period among the parameters; those of the user stay out of 10 to 14
-RESERVED = range(10, 15)
+"""AUTO's type numbers of special points of cycles, by kind."""
+END, USER = 9, -4  # AUTO's type numbers of an end of a branch and of a user-defined point
+WIDTH = 19  # characters of a column
+PERIOD = 11  # AUTO's index of the period among the parameters
+RESERVED = range(10, 15)  # indices of parameters that AUTO reserves for itself
 
 
 def places(path: Path) -> tuple[Path, Path, Path]:
-    """Places of the three files for a name, which may begin with ``b.`` or end in ``.auto``."""
+    """Return the paths of the three files for a path whose name may begin with ``b.`` or end in ``.auto``."""
     name = path.name.removeprefix("b.").removesuffix(".auto")
     branches, solutions, meanings = (path.with_name(f"{letter}.{name}") for letter in "bsd")
     return branches, solutions, meanings
 
 
 def write_auto(graph: Graph, path: Path) -> Path:
-    """Write the three files; the place of b.NAME is returned."""
+    """Write the three files; return the path of b.NAME."""
     labels = _labels(graph)
     written = _diagram, _solutions, _meanings
     for place, lines in zip(places(path), written, strict=True):
@@ -56,7 +56,7 @@ def write_auto(graph: Graph, path: Path) -> Path:
 
 
 def _labels(graph: Graph) -> dict[str, int]:
-    """AUTO's number of each special point, in the order of branches and of the points along them."""
+    """Return AUTO's label number of each special point, in the order of the branches and along them."""
     found: dict[str, int] = {}
     for branch in graph.branches.values():
         for _, label in sorted(branch.marks):
@@ -66,7 +66,7 @@ def _labels(graph: Graph) -> dict[str, int]:
 
 
 def _of_cycles(branch: Branch) -> bool:
-    """Whether a branch has motions in time, whatever its unknowns are."""
+    """Whether the solutions of a branch are motions in time, not equilibria."""
     return "cycle" in branch.description or branch.description.get("word", "equilibrium") != "equilibrium"
 
 
@@ -76,7 +76,7 @@ def _type(point: SpecialPoint, branch: Branch) -> int:
 
 
 def _parameter_places(branch: Branch) -> dict[str, int]:
-    """Places of the parameters of a branch among AUTO's, the continuation parameter's first."""
+    """Return AUTO's indices of the parameters of a branch, that of the continuation parameter first."""
     numbers = {
         name: value
         for name, value in _parameters(branch).items()
@@ -87,7 +87,7 @@ def _parameter_places(branch: Branch) -> dict[str, int]:
 
 
 def _parameters(branch: Branch) -> dict[str, float]:
-    """The parameters that a branch's description tells."""
+    """Return the numerical parameters in a branch's description, by name."""
     told = branch.description.get("p0") or branch.description.get("model") or {}
     return {
         str(name): float(value)
@@ -132,7 +132,7 @@ def _dimension(branch: Branch) -> int:
 
 
 def _number(value: float) -> str:
-    """A number in 19 letters with an exponent of three digits, as Fortran writes it."""
+    """Format a number in 19 characters with an exponent of three digits, as Fortran does."""
     if not math.isfinite(value):
         return f"{'NaN' if math.isnan(value) else 'Infinity' if value > 0 else '-Infinity':>{WIDTH}}"
     mantissa, exponent = f"{value:.10E}".split("E")
@@ -146,7 +146,7 @@ def _solutions(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
         point = graph.special[label]
         branch = graph.branches[point.branch]
         if point.problem is None and "cycle" in branch.description:
-            continue  # its states at AUTO's places are not known
+            continue  # without its problem, the states on AUTO's mesh cannot be evaluated
         index = next((k for k, mark in branch.marks if mark == label), 0)
         named = _parameter_places(branch)
         values = [0.0] * max(named.values())
@@ -180,14 +180,14 @@ def _solutions(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
 
 
 def _equidistant(widths: np.ndarray, degree: int) -> np.ndarray:
-    """Edges of the intervals of a mesh and places between them, in units of the period, as AUTO divides an interval."""
+    """Return the edges of mesh intervals and `degree - 1` equidistant points in each, as AUTO's mesh has them, in units of the period."""
     edges = np.append(0.0, np.cumsum(widths)) / np.sum(widths)
     inner = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(degree) / degree
     return np.append(inner.reshape(-1), 1.0)
 
 
 def _rows(values: Iterable[float]) -> Iterator[str]:
-    """Numbers, seven on a line."""
+    """Yield lines of seven numbers."""
     texts = [_number(float(value)) for value in values]
     for k in range(0, len(texts), 7):
         yield "    " + "".join(texts[k : k + 7])
@@ -206,9 +206,9 @@ def _meanings(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
 
 
 def write_xpp(graph: Graph, path: Path) -> None:
-    """Write a row per point: parameter, largest and smallest value, type, number of the branch.
+    """Write a file of XPPAUT: a row per point with parameter, largest and smallest value, type, number of the branch.
 
-    The value is the first state of a flow, the first measure of any other motion. Types are those of XPPAUT: 1 and 2 for stable and
+    The value is the first state of a flow, or the first measure of any other motion. Types are those of XPPAUT: 1 and 2 for stable and
     unstable equilibria, 3 and 4 for stable and unstable motions in time.
     """
     rows = []
@@ -223,7 +223,7 @@ def write_xpp(graph: Graph, path: Path) -> None:
 
 
 def _ends(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
-    """Largest and smallest value of what is shown, each of shape (n,)."""
+    """Return the largest and the smallest value of the exported state or measure at each point, each of shape (n,)."""
     measures = measures_of(branch)
     names = [name.removeprefix("max ") for name in measures if name.startswith("max ")]
     state = next((name for name in names if f"min {name}" in measures), None)

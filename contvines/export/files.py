@@ -1,4 +1,4 @@
-"""A graph, or a chart, as files that other programs read: csv, json, graphml, mat."""
+"""Export of a graph or a chart as a file for other programs: csv, json, graphml, mat, latex, auto, xpp."""
 
 from __future__ import annotations
 
@@ -27,23 +27,39 @@ if TYPE_CHECKING:
 
 FORMATS = ("csv", "json", "graphml", "mat", "latex", "auto", "xpp")
 ENDINGS = {"latex": "tex", "xpp": "dat"}
-"""Of files, where they are not called like their format."""
+"""File name endings of formats whose ending differs from their name."""
 
 
 def export(graph: Graph, to: str | None, path: str | Path) -> Path:
-    """Write a graph in one of `FORMATS`; None: the one that the name ends in.
+    """Write a graph in one of `FORMATS`.
 
-    csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
-    unknowns, multipliers, word, periods, and every measure that a branch of the graph has; what is not defined
-    is left empty). json: what `contvines show --json` prints. graphml: branches as nodes, switches as edges. mat:
-    one struct of arrays per branch (its measures a struct in it) and per special point. latex: tables of branches and
-    special points (file.tex). auto: files b.NAME, s.NAME and d.NAME of AUTO-07p, for NAME.auto or b.NAME. xpp: the points of a diagram of
-    XPPAUT (file.dat). Measures need the branches' problems: load the graph with them.
+    - csv: one row per point of every branch: branch, index, parameter, stable, real, margin, special point, unknowns, multipliers, word,
+      periods, and all measures of the graph's branches; undefined cells are empty;
+    - json: the output of `contvines show --json`;
+    - graphml: branches as nodes, switches as edges;
+    - mat: one struct of arrays per branch (with a struct of its measures) and per special point;
+    - latex: tables of branches and special points (file.tex);
+    - auto: the files b.NAME, s.NAME and d.NAME of AUTO-07p, for NAME.auto or b.NAME;
+    - xpp: the points of a diagram of XPPAUT (file.dat).
+
+    Measures need the branches' problems: load the graph with them.
+
+    Parameters
+    ----------
+    graph : Graph
+    to : str or None
+        The format; None: the one given by the ending of the file name.
+    path : path
+
+    Returns
+    -------
+    Path
+        Of the written file.
 
     Raises
     ------
     ValueError
-        If the format is not known, the place cannot be written, or it holds a file of another kind.
+        If the format is unknown, or the path cannot be written or is a file of another kind.
     """
     writers = {
         "csv": _csv,
@@ -74,12 +90,18 @@ def export(graph: Graph, to: str | None, path: str | Path) -> Path:
 
 
 def check_target(path: Path, ending: str) -> None:
-    """Refuse a place that cannot be written, or where a graph, a study or another kind of file would be lost.
+    """Check that a path can be written and that no graph, study or file of another kind would be overwritten.
+
+    Parameters
+    ----------
+    path : Path
+    ending : str
+        Of the kind of file to be written, without a dot.
 
     Raises
     ------
     ValueError
-        With a sentence that names the file and a valid name, or the package that such files need.
+        If not; the message names the file and a valid name, or the package that must be installed.
     """
     refuse_place(path)
     own = path.suffix.lower()
@@ -105,7 +127,7 @@ def _csv(graph: Graph, path: Path) -> None:
 
 
 def _written(value: object) -> object:
-    """A number at full precision, nothing where there is none."""
+    """Return a cell of the CSV: numbers at full precision, an empty text for None and nan, 0 or 1 for booleans."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if isinstance(value, bool | np.bool_):
@@ -118,7 +140,7 @@ def _json(graph: Graph, path: Path) -> None:
 
 
 def _graphml(graph: Graph, path: Path) -> None:
-    """GraphML (graphml.graphdrawing.org): a `key` for each attribute of nodes or edges, then the graph with its data."""
+    """Write GraphML (graphml.graphdrawing.org): a `key` element for each attribute of nodes and edges, then the graph with its data."""
     keys: dict[tuple[str, str, str], ElementTree.Element] = {}
 
     def describe(element: ElementTree.Element, of: str, data: dict[str, Any]) -> None:
@@ -147,7 +169,7 @@ _GRAPHML_TYPES = ((bool, "boolean"), (int, "long"), (float, "double"), (str, "st
 
 
 def _flat(data: dict[str, Any]) -> dict[str, Any]:
-    """GraphML holds scalars: lists and dicts are written as JSON text, what is None is left out."""
+    """Convert values to the scalars of GraphML: lists and dicts become JSON text, None is left out."""
     return {
         str(k): v if isinstance(v, bool | int | float | str) else json_text(v, indent=None)
         for k, v in data.items()
@@ -156,7 +178,7 @@ def _flat(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _mat(graph: Graph, path: Path) -> None:
-    """Structs of arrays; what JSON holds of a branch, a point or the graph are fields, too."""
+    """Write a MATLAB file: structs with the arrays, and as further fields the JSON content, of branches, special points and the graph."""
     from scipy.io import savemat
 
     branches = {
@@ -200,7 +222,7 @@ def _mat(graph: Graph, path: Path) -> None:
 
 
 def _fields(data: Mapping[str, Any]) -> dict[str, Any]:
-    """A struct: names that MATLAB takes, no entries of nothing, lists of dicts as cells."""
+    """Convert a mapping to a MATLAB struct: valid field names, None left out, lists of mappings as cells."""
     return {
         re.sub(r"\W", "_", str(name)): _mat_value(value)
         for name, value in data.items()
@@ -225,19 +247,19 @@ CHART_FORMATS = ("csv", "json")
 
 
 def export_chart(chart: Chart, form: str, path: Path) -> Path:
-    """Write a chart.
+    """Write a chart as CSV or JSON.
 
     Parameters
     ----------
     chart : Chart
     form : {"csv", "json"}
-        csv has a row per point of every locus: its label, kind and word, both parameters, and whether the motion is real.
+        The CSV has a row per point of every locus: label, kind and word of the locus, both parameters, and whether the motion is real.
     path : Path
 
     Raises
     ------
     ValueError
-        If there is no such format for charts, or the place will not do.
+        If the format is unknown, or the path cannot be written or is a file of another kind.
     """
     if form not in CHART_FORMATS:
         raise ValueError(f"--to {form}: a chart is written as {' or '.join(CHART_FORMATS)}.")
@@ -255,7 +277,7 @@ def export_chart(chart: Chart, form: str, path: Path) -> Path:
 
 
 def json_text(data: object, *, indent: int | None = 2) -> str:
-    """Standard JSON at full precision; numbers that JSON lacks (nan, infinities) become null."""
+    """Return standard JSON text at full precision; nan and infinities, which JSON lacks, become null."""
     return json.dumps(_finite(data), indent=indent, allow_nan=False, ensure_ascii=False)
 
 

@@ -1,4 +1,4 @@
-"""Branches as columns of numbers, the one source of csv files, as pandas data frames and as xarray data sets."""
+"""Branches and loci as columns of numbers (which CSV files contain, too), pandas data frames and xarray data sets."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def graph_frame(graph: Graph) -> DataFrame:
-    """All points of all branches, indexed by branch and point; the columns of the csv file.
+    """Return all points of all branches as a data frame indexed by branch and point, with the columns of `graph_columns`.
 
     Raises
     ------
@@ -31,7 +31,7 @@ def graph_frame(graph: Graph) -> DataFrame:
 
 
 def points_frame(graph: Graph) -> DataFrame:
-    """The special points, indexed by label: kind, branch, value of the parameter, whether real, criticality, and the branches they lead to.
+    """Return the special points as a data frame indexed by label: kind, branch, parameter value, real, criticality, branches that leave them.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def points_frame(graph: Graph) -> DataFrame:
 
 
 def graph_dataset(graph: Graph) -> Dataset:
-    """All points of all branches as a data set over the dimension ``row``, whose coordinates are branch and index.
+    """Return all points of all branches as a data set over the dimension ``row``, with branch and index as coordinates.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def graph_dataset(graph: Graph) -> Dataset:
 
 
 def chart_frame(chart: Chart) -> DataFrame:
-    """All points of all loci, indexed by locus and point: kind, word, both parameters, and whether the motion is real.
+    """Return all points of all loci as a data frame indexed by locus and point: kind, word, both parameters, and whether the motion is real.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def chart_frame(chart: Chart) -> DataFrame:
 
 
 def chart_dataset(chart: Chart) -> Dataset:
-    """All points of all loci as a data set over the dimension ``row``, whose coordinates are locus and index.
+    """Return all points of all loci as a data set over the dimension ``row``, with locus and index as coordinates.
 
     Raises
     ------
@@ -95,7 +95,13 @@ def chart_dataset(chart: Chart) -> Dataset:
 
 
 def branch_frame(branch: Branch) -> DataFrame:
-    """The points of one branch, indexed by their number."""
+    """Return the points of one branch as a data frame indexed by their number.
+
+    Raises
+    ------
+    ValueError
+        If pandas is not installed.
+    """
     units = dict(branch.description.get("units") or {})
     return (
         needed("pandas", "tables")
@@ -106,7 +112,7 @@ def branch_frame(branch: Branch) -> DataFrame:
 
 
 def branch_dataset(branch: Branch) -> Dataset:
-    """One branch as a data set: points, multipliers, stability (where it is computed) and measures over the dimension ``point``.
+    """Return one branch as a data set over the dimension ``point``: unknowns, multipliers, stability (if computed) and measures.
 
     Raises
     ------
@@ -139,7 +145,7 @@ def branch_dataset(branch: Branch) -> Dataset:
 
 
 def _dataset(frame: DataFrame, units: Mapping[str, str]) -> Dataset:
-    """A frame as a data set over the dimension ``row``; what indexed the frame are coordinates."""
+    """Convert a data frame to a data set over the dimension ``row``; the frame's index becomes coordinates."""
     needed("xarray", "tables")
     keys = list(frame.index.names)
     rows = frame.reset_index()
@@ -152,13 +158,13 @@ def _dataset(frame: DataFrame, units: Mapping[str, str]) -> Dataset:
 
 
 def graph_columns(graph: Graph) -> dict[str, list[Any]]:
-    """A row per point of every branch.
+    """Return the columns of a table with a row per point of every branch.
 
     Returns
     -------
     dict of lists
-        branch, index, the parameter, stable, real, margin, special (a label or nothing), unknowns u0 ..., multipliers, word,
-        periods, and every measure that a branch has; nan where something is not defined.
+        branch, index, the parameter, stable, real, margin, special (a label or an empty text), unknowns u0 ..., multipliers, word,
+        periods, and all measures of the branches; undefined cells are nan.
     """
     branches = list(graph.branches.values())
     parts = [branch_columns(branch, graph.units) for branch in branches]
@@ -176,11 +182,11 @@ def graph_columns(graph: Graph) -> dict[str, list[Any]]:
     return result
 
 
-FACTS = ("branch", "index", "stable", "real", "margin", "special")
+FACTS = ("branch", "index", "stable", "real", "margin", "special")  # the first columns, besides the parameter
 
 
 def branch_columns(branch: Branch, units: Mapping[str, str]) -> dict[str, list[Any]]:
-    """The columns of one branch, a row per point; see :func:`graph_columns`."""
+    """Return the columns of one branch; see :func:`graph_columns`."""
     marks = dict(branch.marks)
     n, undefined = len(branch), float("nan")
     columns: dict[str, list[Any]] = {
@@ -192,7 +198,7 @@ def branch_columns(branch: Branch, units: Mapping[str, str]) -> dict[str, list[A
         "margin": branch.margin.tolist(),
         "special": [marks.get(i, "") for i in range(n)],
     }
-    # values on the mesh of a cycle of a flow say nothing in a table
+    # the unknowns of a cycle of a flow are values on its mesh: too many for a table
     meshed = isinstance(branch.description.get("cycle"), Mapping)
     for j in range(0 if meshed else branch.points.shape[1]):
         columns[f"u{j}"] = branch.points[:, j].tolist()
@@ -207,7 +213,7 @@ def branch_columns(branch: Branch, units: Mapping[str, str]) -> dict[str, list[A
 
 
 def chart_rows(chart: Chart) -> Iterator[tuple[str, int, str, str, float, float, bool]]:
-    """A row per point of every locus: label, index, kind, word, both parameters, and whether the motion is real."""
+    """Yield a row per point of every locus: label, index, kind, word, both parameters, and whether the motion is real."""
     for locus in chart.loci.values():
         word = str(locus.branch.description.get("word") or "")
         for i, ((p, q), real) in enumerate(zip(locus.values.tolist(), locus.real, strict=True)):
@@ -215,7 +221,7 @@ def chart_rows(chart: Chart) -> Iterator[tuple[str, int, str, str, float, float,
 
 
 def measures_of(branch: Branch) -> dict[str, np.ndarray]:
-    """All measures of a branch that can be evaluated, each of shape (n,)."""
+    """Return all measures of a branch that can be evaluated, each of shape (n,), by name."""
     found = {}
     for name in branch.measure_names:
         try:
@@ -226,5 +232,5 @@ def measures_of(branch: Branch) -> dict[str, np.ndarray]:
 
 
 def _unknown(name: str) -> int | None:
-    """The number of an unknown, u0, u1 ...; None for any other column."""
+    """Return the number of an unknown from its column's name, u0, u1 ...; None for any other column."""
     return int(name[1:]) if name.startswith("u") and name[1:].isdigit() else None

@@ -1,4 +1,4 @@
-"""A graph as LaTeX tables: its branches and its special points, ruled as the package booktabs does."""
+"""Export of a graph as LaTeX tables of its branches and special points, with the rules of the package booktabs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _POWER = re.compile(r"e([-+]?)0*(\d+)$")
 
 
 def write_latex(graph: Graph, path: Path) -> None:
-    """Both tables, to be read with ``\\input``; the preamble needs ``\\usepackage{booktabs}``."""
+    """Write the tables to a file for ``\\input``; the preamble needs ``\\usepackage{booktabs}``."""
     tables = [branches_table(graph)] + ([special_table(graph, reasons=False)] if graph.special else [])
     lines = [f"% {line}".rstrip() for line in (title(graph), *comments(graph), r"\usepackage{booktabs}")]
     for table in tables:
@@ -33,7 +33,7 @@ def write_latex(graph: Graph, path: Path) -> None:
 
 
 def tabular(table: Table) -> list[str]:
-    """A table as a ``tabular``: columns without content are left out, columns of numbers stand at the right."""
+    """Return the lines of a ``tabular``: empty columns are left out, columns of numbers are right-aligned."""
     columns = [c for c, name in enumerate(table.head) if name or any(row[c] for row in table.rows)]
     sides = ["r" if all(_NUMBER.match(row[c]) for row in table.rows) and table.rows else "l" for c in columns]
     return [
@@ -48,7 +48,7 @@ def tabular(table: Table) -> list[str]:
 
 
 def cell(text: str) -> str:
-    """A cell; numbers are set as mathematics."""
+    """Return a cell as LaTeX; numbers are set in mathematics mode."""
     if not _NUMBER.match(text):
         return escaped(text)
     return "$" + _POWER.sub(_as_power, text) + "$"
@@ -59,5 +59,5 @@ def _as_power(found: re.Match[str]) -> str:
 
 
 def escaped(text: str) -> str:
-    """Text as LaTeX prints it."""
+    """Escape the special characters of LaTeX in a text."""
     return _FOUND.sub(lambda found: _SPECIAL[found[0]], text).replace("..", "\\,--\\,")

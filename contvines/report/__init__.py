@@ -1,1 +1,1 @@
-"""One HTML page from a result: the diagram to zoom and hover, every orbit a click away, no network needed."""
+"""Reports: one HTML page per result, with a diagram to zoom and the orbit of each clicked point; it needs no network."""

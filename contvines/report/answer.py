@@ -1,4 +1,4 @@
-"""An answer as one page that reads on paper (a headline, sentences, pictures, tables, lists), printed by a browser, or set by matplotlib where none is."""
+"""An answer for paper (headline, sentences, pictures, tables, lists), as an HTML page printed by a browser, or as PDF set by matplotlib."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
 
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
-PATIENCE = 120.0  # seconds for a browser to print a page
+PATIENCE = 120.0  # seconds that a browser may take to print a page
 
 Rows = Sequence[Sequence[str]]
 WIDE, HIGH = 595.0, 842.0  # points: A4
 MARGIN = 42.0
 ROOM = WIDE - 2.0 * MARGIN
-LEADING = 1.32  # of a font's size, from line to line
-BODY, SMALL, HEAD, TITLE = 9.0, 8.0, 10.5, 14.0  # points
-COLUMNS = (0.0, 0.31, 0.5)  # of the room: where a table's columns begin
+LEADING = 1.32  # distance of lines, relative to the font size
+BODY, SMALL, HEAD, TITLE = 9.0, 8.0, 10.5, 14.0  # points: font sizes
+COLUMNS = (0.0, 0.31, 0.5)  # left edges of a table's columns, relative to the text width
 BLUE, GREY = "#0b3c6f", "0.35"
 SHARP = 220  # dots per inch of pictures
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What stands on the page, in order.
+    """The contents of the page, in order.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Answer:
     footer: str = ""
 
     def page(self) -> str:
-        """The HTML text; pictures are in it."""
+        """Return the HTML text, with the pictures embedded as SVG."""
         say = html.escape
         parts = [
             f'<p class="answer">{say(self.headline)}</p>',
@@ -86,7 +86,7 @@ class Answer:
 
 
 def _svg(figure: Figure) -> str:
-    """A figure as SVG that stands inside a page."""
+    """Return a figure as an SVG element for embedding in HTML."""
     stream = StringIO()
     figure.savefig(stream, format="svg")
     text = stream.getvalue()
@@ -94,12 +94,12 @@ def _svg(figure: Figure) -> str:
 
 
 def print_page(page: str | Path, target: str | Path) -> str:
-    """Print a page as PDF with the browser of this computer, whose name is returned.
+    """Print a page as PDF with a browser installed on this computer (one of `BROWSERS`); return the browser's name.
 
     Raises
     ------
     ValueError
-        If there is no browser that can, or it fails.
+        If there is no such browser, or it fails.
     """
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
@@ -164,7 +164,7 @@ def set_answer(answer: Answer, target: str | Path) -> None:
 
 
 class _Sheet:
-    """Sheets that are filled from top to bottom."""
+    """A4 sheets of a PDF, filled from top to bottom."""
 
     def __init__(self, pages: PdfPages) -> None:
         from matplotlib.textpath import TextToPath
@@ -176,25 +176,26 @@ class _Sheet:
         from contvines.plots.figures import new_figure
 
         self.figure = new_figure(figsize=(WIDE / 72.0, HIGH / 72.0))
-        self.below = HIGH - MARGIN  # where the free part of the sheet begins
+        # height of the free part's upper edge above the sheet's lower edge, in points
+        self.below = HIGH - MARGIN
 
     def close(self) -> None:
-        """The sheet is done."""
+        """Write the current sheet to the PDF."""
         self.pages.savefig(self.figure)
 
     def turn(self) -> None:
-        """The next sheet."""
+        """Write the current sheet and begin a new one."""
         self.close()
         self._begin()
 
     def gap(self, height: float) -> None:
-        """Room, on the next sheet where this one has none left."""
+        """Reserve vertical space, on a new sheet if this one is full."""
         if self.below - height < MARGIN:
             self.turn()
         self.below -= height
 
     def _wrapped(self, text: str, size: float, room: float, weight: str) -> list[str]:
-        """Lines that are no wider than the room."""
+        """Break a text into lines no wider than `room`."""
         from matplotlib.font_manager import FontProperties
 
         font, lines = FontProperties(size=size, weight=weight), [""]
@@ -214,14 +215,14 @@ class _Sheet:
         )  # fmt: skip
 
     def text(self, text: str, size: float = BODY, weight: str = "normal", color: str = "black") -> None:
-        """A paragraph."""
+        """Set a paragraph."""
         for line in self._wrapped(text, size, ROOM, weight):
             self.gap(LEADING * size)
             self._line(line, 0.0, size, weight, color)
         self.below -= 0.35 * size
 
     def head(self, title: str, rows: int) -> None:
-        """A title over so many rows, on the same sheet as they are if they fit one; with a line below."""
+        """Set a title with a rule below; title and the `rows` rows that follow are kept on one sheet if they fit."""
         from matplotlib.lines import Line2D
 
         needed = HEAD * 2.4 + rows * SMALL * 1.6
@@ -234,7 +235,7 @@ class _Sheet:
         self.figure.add_artist(Line2D(ends, (height, height), color="0.6", lw=0.6))
 
     def row(self, cells: Sequence[str]) -> None:
-        """A row of a table, its last column broken where it is long."""
+        """Set a row of a table; long cells are broken into lines."""
         starts = [ROOM * part for part in COLUMNS[: len(cells)]]
         ends = [*starts[1:], ROOM]
         broken = [
@@ -248,7 +249,7 @@ class _Sheet:
         self.below -= 0.25 * SMALL
 
     def picture(self, figure: Figure) -> None:
-        """A picture as wide as the sheet."""
+        """Set a picture as wide as the text."""
         import numpy as np
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 

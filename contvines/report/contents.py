@@ -1,4 +1,4 @@
-"""What a report shows of a graph, a chart or a survey, as data for its page: few digits, no infinities, no markup."""
+"""Data for the page of a report on a graph, a chart or a survey: rounded numbers, no infinities, no markup."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ if TYPE_CHECKING:
     from ..survey.results import Survey
 
 
-NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
-SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most
-MEASURES = 14  # at most, to choose the axes from
-RASTER = 180  # cells of the picture of the regions each way, at most
-MOTIONS = 24  # of each locus
-DENSE = 90  # points of a motion's curves
+NUMBERS = 420_000  # numbers for all orbits together, which keep a page below 5 MB
+SAMPLES = (48, 160)  # smallest and largest number of points on an orbit's curves
+MEASURES = 14  # largest number of measures offered for the axes
+RASTER = 180  # largest number of cells of the picture of regions each way
+MOTIONS = 24  # number of motions per locus
+DENSE = 90  # points on a motion's curves in charts
 
 
 def contents(graph: Graph, source: str) -> dict[str, Any]:
-    """The data of a page.
+    """Return the data for a graph's page.
 
     Parameters
     ----------
     graph : Graph
-        With its problems attached, or branches come without orbits.
+        Branches without an attached problem are shown without orbits.
     source : str
-        Name of the file, as the commands on the page shall write it.
+        Name of the graph's file in the commands that the page shows.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def _point(graph: Graph, point: SpecialPoint, proof: str) -> dict[str, Any]:
 
 
 def _marginal(point: SpecialPoint) -> bool:
-    """Whether the motion is neither stable nor unstable there: a multiplier on the boundary, none beyond it."""
+    """Whether the motion at a special point is marginal: a multiplier on the stability boundary, none beyond it."""
     sizes = point.multipliers
     if point.kind not in CRITICAL or not len(sizes) or not np.isfinite(sizes).all():
         return False
@@ -127,7 +127,7 @@ def _attractor(about: Attractor) -> dict[str, Any]:
 
 
 def _orbits(graph: Graph) -> dict[str, Any]:
-    """Per branch the scenes of its orbits, every `step`-th point; fewer samples where there are many points."""
+    """Return for each branch the scenes of its orbits; points are skipped and samples reduced to stay below `NUMBERS`."""
     kept = [b for b in graph.branches.values() if b.problem is not None and len(b)]
     total = sum(len(b) for b in kept)
     if not total:
@@ -145,7 +145,7 @@ def _orbits(graph: Graph) -> dict[str, Any]:
 
 
 def _scenes(curve: Branch | Locus, places: Iterable[int], samples: int) -> dict[str, Any]:
-    """The motions at some points of a branch or locus; empty of a problem whose solutions have none."""
+    """Return the scenes at some points of a branch or locus, by index; empty if the solutions are not `Animated`."""
     found = {}
     for i in places:
         shown = scene(curve.orbit(i), samples)
@@ -160,14 +160,14 @@ def _pairs(values: np.ndarray) -> list[list[float]]:
 
 
 def chart_contents(chart: Chart, source: str) -> dict[str, Any]:
-    """The data of a chart's page.
+    """Return the data for a chart's page.
 
     Parameters
     ----------
     chart : Chart
-        With its problems attached, or loci come without motions.
+        Loci without an attached problem are shown without motions.
     source : str
-        Name of the file, as the Python lines on the page shall write it.
+        Name of the chart's file in the Python lines that the page shows.
 
     Returns
     -------
@@ -221,7 +221,7 @@ def _region(region: Region, parameters: tuple[str, str]) -> dict[str, Any]:
 
 
 def _raster(chart: Chart) -> dict[str, Any]:
-    """Which region each cell of the plane belongs to (-1: none), and where the cells lie."""
+    """Return the region index of each cell of the plane (-1: none), the centre of the first cell, and the size of a cell."""
     cells = [region.cells for region in chart.regions if region.cells.size]
     if not cells:
         return {"raster": [], "corner": [0, 0], "cell": [1, 1]}
@@ -248,7 +248,7 @@ def _motions(locus: Locus) -> dict[str, Any]:
 
 
 def survey_contents(survey: Survey, source: str) -> dict[str, Any]:
-    """The data of a survey's page.
+    """Return the data for a survey's page.
 
     Parameters
     ----------
@@ -292,12 +292,12 @@ def _as_text(value: object) -> str:
 
 
 def shortened(values: ArrayLike, digits: int = 9) -> list[float | None]:
-    """Numbers with so many digits; None for what is no finite number."""
+    """Round numbers to `digits` significant digits; None for nan and infinities."""
     return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
 
 
 def rounded(value: object) -> object:
-    """Arrays and numbers within dicts and lists with five digits."""
+    """Round the arrays and numbers in nested dicts and lists to five significant digits."""
     if isinstance(value, np.ndarray):
         return shortened(value, 5)
     if isinstance(value, dict):
@@ -308,11 +308,11 @@ def rounded(value: object) -> object:
 
 
 def heading(result: Graph | Chart, source: str, names: Iterable[str]) -> dict[str, Any]:
-    """What every page of a graph or chart says: versions, model, settings, state, and these names as labels of axes."""
+    """Return the data common to pages of graphs and charts: version, model, settings, state, and axis labels for `names`."""
     from .. import __version__
 
     model = {str(k): v for k, v in result.model.items() if not isinstance(v, dict | list)}
-    if "page" in model:  # not where it lay
+    if "page" in model:  # without its folder
         model["page"] = PurePath(model["page"]).name
     return {
         "version": __version__,
@@ -329,14 +329,14 @@ def heading(result: Graph | Chart, source: str, names: Iterable[str]) -> dict[st
 
 
 def scene(orbit: object, samples: int) -> dict[str, Any] | None:
-    """Curves of a motion for the page; None of a solution that has none."""
+    """Return the curves of a motion for the page; None if the solution is not `Animated`."""
     if not isinstance(orbit, Animated):
         return None
     return {name: rounded(part) for name, part in orbit.scene(samples).items()}
 
 
 def plain_label(label: str) -> str:
-    """A matplotlib label as plain text: no dollars and commands."""
+    """Convert a matplotlib label to plain text, without dollars and commands."""
     for old, new in (
         ("$^{-1}$", "⁻¹"), ("$", ""), (r"\Omega", "Ω"), (r"\mu", "μ"), (r"\tilde g", "g"), (r"\varepsilon", "ε"), (r"\lambda", "λ"),
         ("^{2}", "²"), ("^{-2}", "⁻²"), ("^{3}", "³"), ("^+", "⁺"), ("^-", "⁻"), ("^2", "²"), ("_1", "₁"), ("_-", "₋"), (r"\,", " "),

@@ -1,4 +1,4 @@
-"""The page itself: data, program and plotly packed into one file that asks for nothing from outside."""
+"""The HTML page of a report: data, program and plotly in one self-contained file."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def write_report(
     Parameters
     ----------
     result : Graph, Chart or Survey
-        Graphs and charts loaded with their problems, so that orbits can be drawn.
+        Graphs and charts need their problems, so that orbits can be drawn.
     target : path
-        The page; its name ends in .html.
+        Of the page; its name ends in .html.
     source : path
-        The result's file, as the commands on the page shall name it.
+        The result's file, for the commands that the page shows.
     trust : bool
-        Whether the file names Python code that these commands must be allowed to run.
+        Whether these commands need the option ``--trust``, as the file names Python code.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def write_report(
     Raises
     ------
     ValueError
-        If the place cannot be written, or plotly is not installed.
+        If the page cannot be written, or plotly is not installed.
     """
     place = Path(target)
     check_page(place)
@@ -63,7 +63,7 @@ def write_report(
 
 
 def content_of(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[str, Any]]:
-    """Which page shows a result, and the data for it."""
+    """Return the kind of a result's page (a key of `PROGRAMS`) and the data for it."""
     from ..graph import Graph
     from ..loci.chart import Chart
 
@@ -81,7 +81,7 @@ def content_of(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[s
 
 
 def page(data: dict[str, Any], kind: str = "graph") -> str:
-    """The HTML text of a page of this kind (`PROGRAMS`) that shows `data`."""
+    """Return the HTML text of a page of a kind (a key of `PROGRAMS`) that shows `data`."""
     here = files("contvines.report")
     parts = {
         "TITLE": html.escape(f"{data['source']}: {kind}", quote=False),
@@ -99,12 +99,12 @@ def page(data: dict[str, Any], kind: str = "graph") -> str:
 
 
 def check_page(place: Path, plotly: bool = True) -> None:
-    """Refuse, before any work, a page that could not be written at the end.
+    """Check, before any work, that a page can be written.
 
     Raises
     ------
     ValueError
-        With a name that is accepted, or the installation that is missing.
+        If not; the message suggests a valid name, or names the package that must be installed.
     """
     if place.suffix.lower() not in (".html", ".htm"):
         raise ValueError(f"{place}: a report is a page, its name must end in .html; use {place.stem}.html.")
