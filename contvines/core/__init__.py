@@ -1,1 +1,1 @@
-"""General numerics that know no machine: the native core and its reference in numpy."""
+"""General numerics, independent of machines: the native core (compiled C++) and its reference implementation in numpy."""

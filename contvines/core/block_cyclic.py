@@ -1,4 +1,5 @@
-"""Block-cyclic systems with border, of blocks of any size, in O(N): orthogonal elimination by the native core (`native/collocation.hpp`)."""
+"""Bordered block-cyclic linear systems with blocks of any size, solved in O(N) by orthogonal elimination in the native core
+(`native/collocation.hpp`)."""
 
 from __future__ import annotations
 
@@ -12,7 +13,11 @@ from .table import pack
 
 
 class Eliminated(NamedTuple):
-    """Values at the nodes, shape (N, m d, s), shared unknowns, (k, s), equations between mesh points, both (N, d, d), sign of the determinant."""
+    """Solution of a block-cyclic system.
+
+    Its fields in order: values at the nodes, shape (N, m d, s); shared unknowns, shape (k, s); the two blocks of the equations between
+    neighbouring mesh points after elimination, each of shape (N, d, d); sign of the determinant.
+    """
 
     states: np.ndarray
     shared: np.ndarray
@@ -29,19 +34,24 @@ def eliminate(
     d: int,
     closure: float = 1.0,
 ) -> Eliminated:
-    """Solve ``blocks[i] x_i + columns[i] (e, -1) = 0``, ``sum rows[i] x_i + foot (e, -1) = 0``, where the last node of an interval is the
-    first one of the next, and the last one of all is ``closure`` times the first.
+    """Solve ``blocks[i] x_i + columns[i] (e, -1) = 0`` and ``sum rows[i] x_i + foot (e, -1) = 0`` for the node values x and the shared unknowns e.
+
+    The last node of an interval is the first one of the next, and the last node of all is ``closure`` times the first.
 
     Parameters
     ----------
     blocks : ndarray, shape (N, m d, (m + 1) d)
-        m = 1: equations between neighbouring nodes.
+        m is the number of nodes per interval; m = 1: equations between neighbouring nodes.
     columns : ndarray, shape (N, m d, k + s)
-        Of the k shared unknowns, then s right-hand sides.
+        Columns of the k shared unknowns, then s right-hand sides.
     rows : ndarray, shape (N, k, m d)
+        Border rows.
     foot : ndarray, shape (k, k + s)
+        Corner of the border, then its right-hand sides.
     d : int
+        Number of states at a node.
     closure : float
+        1, or -1 for a half period of a symmetric orbit.
     """
     count, size, _ = blocks.shape
     k, s = foot.shape[0], foot.shape[1] - foot.shape[0]

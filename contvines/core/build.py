@@ -1,6 +1,6 @@
-"""Compile the native core: ``python -m contvines.core.build`` in a checkout; wheels are built by ``hatch_build.py``.
+"""Compile the native core: ``python -m contvines.core.build`` in a checkout; ``hatch_build.py`` does it for wheels.
 
-This file needs nothing but the standard library, so that a build can use it before anything is installed.
+This file uses the standard library only, so that a build can run it before any package is installed.
 """
 
 from __future__ import annotations
@@ -31,25 +31,25 @@ FLAGS = (
     "-fvisibility=hidden",
 )
 ZIG = "ziglang==0.13.0"
-"""The compiler in a wheel that a build asks for where the system has none."""
+"""Requirement of a wheel with a compiler, which a build installs if the system has no compiler."""
 
 
 class NotBuilt(Exception):
-    """The native core cannot be compiled; the sentence says why."""
+    """The native core cannot be compiled; the message gives the reason."""
 
 
 def variants() -> tuple[str, ...]:
-    """Names of the variants for this machine's processor."""
+    """Return the names of the variants of the core for this computer's processor."""
     return ("baseline", "avx2") if platform.machine().lower() in ("x86_64", "amd64") else ("baseline",)
 
 
 def path_of(variant: str, folder: Path = HERE) -> Path:
-    """File of a variant's library."""
+    """Return the path of a variant's library."""
     return folder / f"libcontvines-{variant}{SUFFIX}"
 
 
 def digest(sources: Path = SOURCES) -> str:
-    """Digest of all native sources and of the flags."""
+    """Return the digest of all native sources and the compiler flags."""
     found = hashlib.blake2b(repr((FLAGS, VARIANTS)).encode(), digest_size=8)
     for file in sorted(sources.iterdir()):
         if file.suffix in (".h", ".hpp", ".cpp"):
@@ -58,14 +58,14 @@ def digest(sources: Path = SOURCES) -> str:
 
 
 def up_to_date(folder: Path = HERE) -> bool:
-    """Whether the libraries in a folder belong to the sources of this checkout (their digest is a string in them)."""
+    """Whether the libraries in a folder were built from the sources of this checkout, whose digest they contain as text."""
     mark = digest().encode()
     paths = [path_of(variant, folder) for variant in variants()]
     return all(path.exists() and mark in path.read_bytes() for path in paths)
 
 
 def compiler() -> list[str] | None:
-    """Command of the system's C++ compiler: ``CXX``, c++, g++ or clang++, the first that knows the flags; None if there is none."""
+    """Return the command of the system's C++ compiler: the first of ``CXX``, c++, g++, clang++ that accepts the flags; None if there is none."""
     given = shlex.split(os.environ.get("CXX", ""))
     named = [given, *([name] for name in ("c++", "g++", "clang++"))]
     return next(
@@ -74,13 +74,13 @@ def compiler() -> list[str] | None:
 
 
 def _knows(command: list[str]) -> bool:
-    """Whether a compiler is young enough for the flags; that of some long-lived systems is not."""
+    """Whether a compiler accepts the flags; old versions do not."""
     done = subprocess.run([*command, *FLAGS, "-fsyntax-only", "-x", "c++", os.devnull], capture_output=True)
     return done.returncode == 0
 
 
 def zig(target: str = "") -> list[str] | None:
-    """Command of the compiler in the wheel `ziglang`; None if it is not installed."""
+    """Return the command of the compiler in the wheel `ziglang`; None if it is not installed."""
     from importlib.util import find_spec
 
     if find_spec("ziglang") is None:
@@ -89,13 +89,13 @@ def zig(target: str = "") -> list[str] | None:
 
 
 def build(folder: Path = HERE, command: list[str] | None = None) -> list[Path]:
-    """Compile all variants for this machine into a folder.
+    """Compile all variants for this computer's processor into a folder.
 
     Parameters
     ----------
     folder : Path
     command : list of str, optional
-        The compiler; by default the system's, else zig's.
+        Of the compiler; by default the system's, or that of zig if there is none.
 
     Returns
     -------
@@ -110,12 +110,12 @@ def build(folder: Path = HERE, command: list[str] | None = None) -> list[Path]:
     command = command or compiler() or zig()
     if command is None:
         raise NotBuilt(f"there is no C++ compiler (CXX, c++, g++, clang++); pip install {ZIG} brings one")
-    with ThreadPoolExecutor() as pool:  # each waits for its compiler
+    with ThreadPoolExecutor() as pool:  # each thread waits for a compiler process
         return list(pool.map(partial(_compiled, command, folder, digest()), variants()))
 
 
 def _compiled(command: list[str], folder: Path, mark: str, variant: str) -> Path:
-    """The library of a variant, compiled into a folder."""
+    """Compile a variant into a folder and return the library's path."""
     target = path_of(variant, folder)
     unfinished = target.with_name(f"{target.stem}-{os.getpid()}{SUFFIX}")
     flags = [
@@ -125,7 +125,7 @@ def _compiled(command: list[str], folder: Path, mark: str, variant: str) -> Path
         f'-DCORE_DIGEST="{mark}"',
     ]
     for libraries in (["-nostdlib++", "-lm"], ["-nodefaultlibs", "-lm", "-lc", "-lgcc"], ["-lm"]):
-        # the second for versions of g++ that do not know -nostdlib++
+        # the second attempt is for versions of g++ without -nostdlib++
         done = subprocess.run(
             [*command, *flags, "-shared", "-o", str(unfinished), str(SOURCES / "core.cpp"), *libraries],
             capture_output=True,
@@ -138,7 +138,7 @@ def _compiled(command: list[str], folder: Path, mark: str, variant: str) -> Path
 
 
 def main() -> None:
-    """Build in place and say where."""
+    """Compile the core in place and print the paths."""
     try:
         for path in build():
             print(path)

@@ -1,7 +1,8 @@
-"""The native core's shared library: which one is loaded, and how its functions are declared.
+"""The native core's shared library: choice of the variant, and declaration of its functions.
 
-The environment variable ``CONTVINES_CORE`` chooses: ``reference`` (no library), ``baseline`` or ``avx2`` (this variant). Without it
-the best variant for the processor is loaded; where no library can be, one line says so and the reference core computes.
+The environment variable ``CONTVINES_CORE`` chooses the core: ``reference`` (no library), ``baseline`` or ``avx2`` (a variant of the
+library). Without it the best variant for the processor is loaded; if no library can be loaded, a warning is printed and the reference
+core is used.
 """
 
 from __future__ import annotations
@@ -17,23 +18,23 @@ from typing import Any
 from .build import SOURCES, digest, path_of, variants
 
 WHOLE, NUMBER, POINTER, NOTHING = ctypes.c_int64, ctypes.c_double, ctypes.c_void_p, None
-"""Types of arguments and results; arrays are pointers (`address`)."""
+"""C types of arguments and results; arrays are passed as pointers, see `address`."""
 
 CHOICES = ("reference", "baseline", "avx2")
 
 
 class Unusable(Exception):
-    """A library cannot be used; the sentence says why."""
+    """A library cannot be used; the message gives the reason."""
 
 
 @cache
 def library() -> ctypes.CDLL | None:
-    """The loaded library (`ctypes.CDLL`), or None where the reference core computes.
+    """Return the loaded library (`ctypes.CDLL`), or None if the reference core is used.
 
     Raises
     ------
     ValueError
-        If ``CONTVINES_CORE`` is no known choice.
+        If ``CONTVINES_CORE`` has an unknown value.
     """
     choice = os.environ.get("CONTVINES_CORE", "")
     if choice == "reference":
@@ -48,7 +49,7 @@ def library() -> ctypes.CDLL | None:
 
 
 def _load(choice: str) -> ctypes.CDLL:
-    """The variant of this name, or the best one."""
+    """Load the variant with a name, or the best one if the name is empty."""
     baseline = _open("baseline")
     if choice == "baseline" or "avx2" not in variants():
         return baseline
@@ -86,20 +87,21 @@ def _open(variant: str) -> ctypes.CDLL:
 
 
 def _whole(path: Path) -> bool:
-    """Whether an ELF file is as long as it says, with its table of sections at the end.
+    """Whether an ELF file is as long as its header states, from the table of sections at its end.
 
-    The loaders of macOS and Windows look themselves; that of Linux maps what is missing, and a touch of it kills the process.
+    The loaders of macOS and Windows check this themselves. That of Linux maps a truncated file, and an access to the missing part kills
+    the process.
     """
     with path.open("rb") as file:
         head = file.read(64)
     if len(head) < 64 or head[:4] != b"\x7fELF":
-        return True  # for the loader to say
+        return True  # no ELF file: the loader will raise an error
     table, size, count = (int.from_bytes(head[i:j], sys.byteorder) for i, j in ((40, 48), (58, 60), (60, 62)))
     return path.stat().st_size >= table + size * count
 
 
 def variant() -> str:
-    """Name of the core that computes: "reference", "baseline" or "avx2"."""
+    """Return the name of the core in use: "reference", "baseline" or "avx2"."""
     found = library()
     if found is None:
         return "reference"
@@ -107,17 +109,17 @@ def variant() -> str:
 
 
 def native() -> bool:
-    """Whether the native core computes."""
+    """Whether the native core is in use."""
     return library() is not None
 
 
 @cache
 def function(name: str, result: type | None, *arguments: type) -> Callable[..., Any]:
-    """A function of the library by name, with the types of its result and arguments."""
+    """Return a function of the library by name, declared with the types of its result and arguments."""
     found = library()
     if found is None:
         raise RuntimeError(f"{name} belongs to the native core, which is not loaded")
-    declared = found[name]  # an object of its own, not shared with other declarations
+    declared = found[name]  # indexing returns a new object, not shared with other declarations
     declared.restype, declared.argtypes = result, arguments
     return declared
 
@@ -126,8 +128,8 @@ _Memory = ctypes.c_char * 0
 
 
 def address(array: Any) -> int:
-    """Address of an array's first element; the array has to be C-contiguous."""
+    """Return the address of the first element of a C-contiguous array."""
     try:
-        return ctypes.addressof(_Memory.from_buffer(array))  # three times as fast as what numpy offers
-    except (TypeError, BufferError):  # of an array that is not to be written
+        return ctypes.addressof(_Memory.from_buffer(array))  # three times as fast as numpy's own attributes
+    except (TypeError, BufferError):  # a read-only array
         return array.__array_interface__["data"][0]

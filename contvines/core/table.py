@@ -1,9 +1,9 @@
 """Kernels of a compiled problem: a table of C functions behind one pointer (`Table` in native/api.h), called from Python and by native code.
 
-The `data` and the workspaces of such a problem have an attribute ``memory``: the array at whose address the functions find them.
+The `data` and the workspaces of such a problem have an attribute ``memory``: an array whose address is passed to the functions.
 
-Structs of the native core are numpy arrays (`pack`, `block`): every member has eight bytes, and arrays are pointers. Native code is handed the address of
-such an array, which with all that it points to has to live as long as it is in use.
+Structs of the native core are numpy arrays (`pack`, `block`): every member has eight bytes, and arrays are pointers. The caller must keep
+such an array, and all arrays to which it points, alive as long as native code uses its address.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ _PROTOTYPES = (
     ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, NUMBER),
     ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, POINTER, POINTER),
 )
-"""Of linearise, bordered, inspect, assign, flip, transpose."""
+"""Signatures of linearise, bordered, inspect, assign, flip, transpose, in the order of the table."""
 
 
 @runtime_checkable
 class Struct(Protocol):
-    """What the functions of a table find at an address."""
+    """An object with a ``memory``, the array that the functions of a table read and write."""
 
     @property
     def memory(self) -> np.ndarray: ...
 
 
 def memory_of(thing: object) -> int:
-    """Address of the data or the workspace of a compiled problem.
+    """Return the address of the data or the workspace of a compiled problem.
 
     Raises
     ------
@@ -51,19 +51,19 @@ def memory_of(thing: object) -> int:
     """
     memory = getattr(
         thing, "memory", None
-    )  # asked directly: protocols are slow where this is called, at every point
+    )  # no isinstance test with a protocol, which is slow: this is called at every point
     if not isinstance(memory, np.ndarray):
         raise TypeError(f"a {type(thing).__name__} has no memory for the native core")
     return address(memory)
 
 
 class TableKernels:
-    """The kernels of the protocol (`contvines.problems.protocol`), in native code.
+    """Kernels of a problem in native code; see `contvines.problems.protocol` for their contract.
 
     Parameters
     ----------
     table : int
-        Address of the table. Its last three functions may be missing (null): then there are no loci against a second parameter.
+        Address of the table. Its last three functions may be missing (null); the problem then has no loci in a second parameter.
     """
 
     compiled = True
@@ -86,7 +86,7 @@ class TableKernels:
         self.transpose = self._transposed if loci else None
 
     def linearise(self, data: Struct, u: np.ndarray, p: float, work: Struct) -> float:
-        """Residual and derivatives into `work`; returns the largest residual."""
+        """Write residual and derivatives to `work`; return the largest residual."""
         u = np.ascontiguousarray(u, dtype=float)
         return self._linearise(address(data.memory), address(u), p, address(work.memory))
 
@@ -99,27 +99,27 @@ class TableKernels:
         step: np.ndarray,
         tangent: np.ndarray,
     ) -> float:
-        """Solve the bordered system with the linearisation in `work`; returns the determinant's sign."""
+        """Solve the bordered system with the linearisation in `work`; return the determinant's sign."""
         border = np.ascontiguousarray(border, dtype=float)
         return self._bordered(
             address(data.memory), address(work.memory), address(border), target, place(step), place(tangent)
         )
 
     def inspect(self, data: Struct, u: np.ndarray, p: float, work: Struct, row: np.ndarray) -> None:
-        """Multipliers and margins."""
+        """Write multipliers and margins of a solution to `row`."""
         u = np.ascontiguousarray(u, dtype=float)
         self._inspect(address(data.memory), address(u), p, address(work.memory), place(row))
 
     def _assigned(self, data: Struct, other: Struct, value: float) -> None:
-        """Give the parameter that varies in `other` a value in `data`."""
+        """Set in `data` the value of the parameter that varies in `other`."""
         self._assign(address(data.memory), address(other.memory), value)
 
     def _flipped(self, data: Struct, work: Struct, sign: float) -> None:
-        """Turn the linearisation's closure round."""
+        """Multiply the closure condition in the linearisation by `sign`."""
         self._flip(address(data.memory), address(work.memory), sign)
 
     def _transposed(self, data: Struct, work: Struct, column: np.ndarray, other: Struct) -> None:
-        """Write the transposed system, with another last column, into another workspace."""
+        """Write the transposed system, with `column` as its last column, to another workspace."""
         column = np.ascontiguousarray(column, dtype=float)
         self._transpose(address(data.memory), address(work.memory), address(column), address(other.memory))
 
@@ -135,26 +135,29 @@ class TableKernels:
         tolerance: float,
         limit: int,
     ) -> tuple[float, int, float]:
-        """Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not help.
+        """Solve by Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not reduce the residual.
 
         Parameters
         ----------
         data
+            Of the problem.
         u : ndarray, shape (N,)
             Unknowns, changed in place.
         p : float
+            Value of the parameter.
         work
+            Workspace.
         border, step, tangent : ndarray, shape (N + 1,)
-            The last two are filled.
+            The border row; last step and tangent are written to the other two.
         tolerance : float
-            Of the last correction.
+            Largest size of the last correction.
         limit : int
-            Of iterations.
+            Largest number of iterations.
 
         Returns
         -------
         residual : float
-            Infinite where it does not converge.
+            Largest residual; infinite without convergence.
         iterations : int
         p : float
         """
@@ -177,7 +180,7 @@ class TableKernels:
         return residual, count.value, value.value
 
     def examine(self, data: Struct, u: np.ndarray, p: float, work: Struct, row: np.ndarray) -> float:
-        """Residual, and the row of `inspect`, of one solution."""
+        """Return the largest residual of a solution, and write its multipliers and margins to `row` as `inspect` does."""
         residual = self.linearise(data, u, p, work)
         self.inspect(data, u, p, work, row)
         return residual
@@ -190,12 +193,12 @@ def _newton() -> Callable[..., float]:
 
 @cache
 def native_table(name: str, *number: int) -> int:
-    """Address of a table of the native core, from the function of native/core.cpp that returns it."""
+    """Return the address of a table of the native core; `name` is the function of native/core.cpp that returns it."""
     return int(function(name, POINTER, *[WHOLE] * len(number))(*number))
 
 
 class KernelFunctions(Protocol):
-    """The functions of a problem (see the contract in `contvines.problems.protocol`): `contvines.problems.protocol.Kernels`, or a compiled problem's `contvines.core.table.TableKernels`."""
+    """Protocol of a problem's kernels, `contvines.problems.protocol.Kernels` or `TableKernels`; their contract is in `contvines.problems.protocol`."""
 
     @property
     def linearise(self) -> Callable[..., float]: ...
@@ -218,12 +221,12 @@ class KernelFunctions(Protocol):
 
 
 def pack(*members: float | np.ndarray) -> np.ndarray:
-    """A struct from its members, shape (k,): floats, integers, and arrays as pointers.
+    """Return a struct made of its members, shape (k,): floats, integers, and arrays as pointers.
 
     Raises
     ------
     TypeError
-        If an array is not C-contiguous, or of other numbers than float64 and int64.
+        If an array is not C-contiguous, or its type is neither float64 nor int64.
     """
     made = np.empty(len(members), np.int64)
     numbers = made.view(np.float64)
@@ -238,7 +241,7 @@ def pack(*members: float | np.ndarray) -> np.ndarray:
 
 
 def place(array: np.ndarray) -> int:
-    """Address of an array, which has to be one that native code can read."""
+    """Return the address of an array after checking that native code can read it."""
     if not array.flags.c_contiguous or array.dtype not in (np.float64, np.int64):
         raise TypeError(
             f"an array of {array.dtype}, strides {array.strides}, cannot be handed to the native core"
@@ -258,12 +261,14 @@ def _layout(
 def block(
     head: Sequence[float | int], shapes: tuple[tuple[int, ...], ...]
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """One piece of memory: a struct that begins with the numbers of `head`, pointers to arrays, and these arrays, all zero.
+    """Allocate one piece of memory with a struct and its arrays: the numbers of `head`, pointers to arrays, and these arrays, all zero.
 
     Parameters
     ----------
     head : sequence of int and float
+        First members of the struct.
     shapes : tuple of shapes
+        Of the arrays.
 
     Returns
     -------

@@ -1,1 +1,1 @@
-"""What `orbits` and `contvines` both need, and what knows neither: figures in one style, hints, processes."""
+"""Helpers for both `orbits` and `contvines` that depend on neither: figures in one style, hints in error messages, worker processes, files."""

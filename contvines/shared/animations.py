@@ -1,4 +1,4 @@
-"""Animations to files: gif by pillow, mp4 by ffmpeg, html with its own player."""
+"""Write animations to files: gif by pillow, mp4 by ffmpeg, html with a player."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ DPI = 100
 
 
 def check_animation(path: str | Path) -> Path:
-    """Refuse, before any work, a file that no animation could be written to.
+    """Check, before any work, that an animation can be written to a file; return its path.
 
     Raises
     ------
     ValueError
-        If the ending is not known, there is no such folder, or an mp4 is asked for without ffmpeg.
+        If the ending is unknown, the folder does not exist, or ffmpeg is missing for an mp4.
     """
     place = Path(path)
     ending = place.suffix.lstrip(".").lower()
@@ -47,17 +47,17 @@ def check_animation(path: str | Path) -> Path:
 def animated(
     figure: Figure, move: Callable[[int], object], path: str | Path | None, seconds: float, rate: int
 ) -> FuncAnimation:
-    """Move what is drawn, picture by picture, and write the file if a path is given.
+    """Animate a figure frame by frame, and write the animation to a file if a path is given.
 
     Parameters
     ----------
     figure : Figure
-        With all that is drawn; what is laid out stays where it is.
+        With everything drawn; its layout is not changed.
     move : callable
-        Of the number of the picture.
+        ``move(frame)`` updates the figure for a frame number.
     path : path, optional
     seconds, rate : float, int
-        How long it takes, and pictures a second; see `pictures`.
+        Duration, and frames per second.
     """
     from matplotlib import rc_context
 
@@ -67,7 +67,7 @@ def animated(
         move(frame)
         return []
 
-    # all has its place: with a layout engine every picture is drawn once more
+    # the layout is final: a layout engine would draw every frame twice
     with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
         figure.set_layout_engine(None)
         made = _animation_class()(
@@ -83,7 +83,7 @@ def _animation_class() -> type[FuncAnimation]:
     from matplotlib.animation import FuncAnimation
 
     class Animation(FuncAnimation):
-        """An animation that shows itself in a notebook, with its player."""
+        """An animation that a notebook displays with a player."""
 
         def __repr__(self) -> str:
             return "Animation: a notebook shows it with its player, .save(FILE) writes it"
@@ -96,7 +96,7 @@ def _animation_class() -> type[FuncAnimation]:
 
 
 def pictures(seconds: float, rate: int) -> int:
-    """How many pictures an animation has.
+    """Return the number of frames of an animation, for its duration in seconds and frames per second.
 
     Raises
     ------
@@ -109,19 +109,19 @@ def pictures(seconds: float, rate: int) -> int:
 
 
 def save_animation(animation: FuncAnimation, path: str | Path, rate: int) -> Path:
-    """Write an animation; the ending says how.
+    """Write an animation in the format given by the ending of the file name.
 
     Parameters
     ----------
     animation : FuncAnimation
     path : path
     rate : int
-        Pictures a second.
+        Frames per second.
 
     Raises
     ------
     ValueError
-        As `check_animation` does, or if the file cannot be written.
+        As `check_animation`, or if the file cannot be written.
     """
     from matplotlib import rc_context
 

@@ -1,6 +1,6 @@
-"""Figures in the package's style that pyplot does not keep; the user's own settings come before the package's.
+"""Figures in the package's style, not registered with pyplot; settings of the user take precedence over the style.
 
-The options that every picture takes are those of :func:`contvines.plots.diagram.plot_diagram`; methods hand them on to it.
+The options common to all pictures are explained in :func:`contvines.plots.diagram.plot_diagram`.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ if TYPE_CHECKING:
 
 
 Style = str | Mapping[str, Any] | None
-"""A style of ours or of matplotlib's, or rcParams: see :func:`styled`."""
+"""A style of this package or of matplotlib, or rcParams: see :func:`styled`."""
 Size = tuple[float, float] | None
-"""Inches across and upright."""
+"""Width and height in inches."""
 
 HOUSE = Path(__file__).with_name("house.mplstyle")
 STYLES = {path.stem: path for path in Path(__file__).with_name("styles").glob("*.mplstyle")}
-"""Styles of ours, by name: journals, print without colours, slides."""
+"""Styles of this package by name, for journals, print without colours, and slides."""
 FULL_WIDTH = 6.5  # inches; in narrower figures texts, marks and lines shrink
-NARROW, LOW = 5.5, 3.4  # inches: of a picture with several panels
-SMALLEST = 0.72  # but not below this share
-WINDOWLESS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends
+NARROW, LOW = 5.5, 3.4  # inches: below this width and height, several panels are arranged differently
+SMALLEST = 0.72  # smallest factor by which texts, marks and lines shrink
+WINDOWLESS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends without windows
 
 
 @contextmanager
 def styled(style: Style = None) -> Iterator[None]:
-    """Draw in the package's style; what the user has set, and `style`, come before it; settings stay as they were.
+    """Draw in the package's style inside a context; changed rcParams of the user and `style` override it. The rcParams are restored afterwards.
 
     Parameters
     ----------
     style : str, mapping or None
-        A name of :data:`STYLES` ("aps", "elsevier", "springer", "grey", "slides") or of matplotlib's styles, the path of a
-        style sheet, or several of these joined by commas, "aps,grey"; or rcParams.
+        A style of :data:`STYLES` ("aps", "elsevier", "springer", "grey", "slides") or of matplotlib, the path of a style sheet, or several
+        of these joined by commas ("aps,grey"); or a mapping of rcParams.
 
     Raises
     ------
@@ -74,20 +74,20 @@ def styled(style: Style = None) -> Iterator[None]:
 
 
 def _changed(settings: Mapping[Any, object], default: Mapping[Any, object]) -> dict[str, object]:
-    """The settings that are not the defaults; reading the backend would choose one, which imports pyplot."""
+    """Return the settings that differ from the defaults, without the backend: reading that would choose one, and import pyplot."""
     names = [name for name in settings if not name.startswith("backend") and name in default]
     return {name: settings[name] for name in names if settings[name] != default[name]}
 
 
 def shrinking(width: float) -> float:
-    """By how much texts, marks and lines shrink in a figure of a width in inches, below `FULL_WIDTH`."""
+    """Return the factor by which texts, marks and lines shrink in a figure of a width in inches."""
     return float(min(1.0, max(SMALLEST, width / FULL_WIDTH)))
 
 
 def new_figure(figsize: Size = None, **options: Any) -> Figure:
-    """A figure that pyplot does not keep: notebooks show it once, as the value of a cell, and nothing piles up.
+    """Return a new figure that is not registered with pyplot, so that notebooks show it once and memory is released.
 
-    Where pyplot shows windows it is one of pyplot's. In a figure narrower than `FULL_WIDTH` all text is smaller.
+    If pyplot shows windows, it is a figure of pyplot. In a figure narrower than `FULL_WIDTH` all text is smaller.
     """
     import matplotlib as mpl
 
@@ -100,7 +100,7 @@ def new_figure(figsize: Size = None, **options: Any) -> Figure:
         for name in ("axes.labelsize", "axes.titlesize", "legend.fontsize")
         if isinstance(mpl.rcParams[name], int | float)
     }
-    mpl.rcParams.update(changed)  # inside `styled`, which puts everything back
+    mpl.rcParams.update(changed)  # inside `styled`, which restores the settings
     if windows():
         return sys.modules["matplotlib.pyplot"].figure(figsize=figsize, **options)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -111,25 +111,25 @@ def new_figure(figsize: Size = None, **options: Any) -> Figure:
 
 
 def root(axes: Axes) -> Figure:
-    """The figure that axes stand on, also where they are in a part of it."""
+    """Return the figure of axes, also of axes in a subfigure."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     return figure
 
 
 def pixels(axes: Axes) -> float:
-    """Pixels per point."""
+    """Return the number of pixels per point."""
     return root(axes).dpi / 72.0
 
 
 def narrower(axes: Axes, inches: float) -> bool:
-    """Whether the figure of some axes is narrower than that."""
+    """Whether the figure of some axes is narrower than a width in inches."""
     return root(axes).get_figwidth() < inches
 
 
 @contextmanager
 def drawing(axes: Axes | None, style: Style, figsize: Size = None) -> Iterator[tuple[Figure, Axes, bool]]:
-    """Figure and axes to draw on in a style, and whether they are new: new ones are given their place at the end."""
+    """Yield figure and axes to draw on in a style, and whether they are new; a new figure is laid out at the end."""
     with panels(axes, (1,), "this is drawn on", figsize, style, {"mosaic": "a"}) as (figure, (drawn,)):
         yield figure, drawn, axes is None
 
@@ -144,23 +144,26 @@ def panels(
     wide: Mapping[str, Any],
     narrow: Mapping[str, Any] | None = None,
 ) -> Iterator[tuple[Figure, list[Axes]]]:
-    """A figure and the panels to draw on in a style; new ones are given their place at the end.
+    """Yield a figure and the panels to draw on in a style; a new figure is laid out at the end.
 
     Parameters
     ----------
-    axes : those that the user gives, or None for a new figure
-    counts : how many may be given
-    what : the beginning of the sentence that refuses another number
+    axes : Axes, sequence of Axes or None
+        Axes given by the user; None: a new figure.
+    counts : sequence of int
+        Allowed numbers of given axes.
+    what : str
+        Beginning of the error message for another number.
     figsize, style
         Of a new figure.
     wide, narrow : mapping
-        Arguments of `subplot_mosaic` in a new figure; the panels come in the order of their names. With `narrow` a narrow figure
-        has these, and one that is low, too, has room for the first one alone.
+        Arguments of `subplot_mosaic` for a new figure; the panels are returned in the order of their names. `narrow` is for figures narrower
+        than `NARROW`; a figure that is lower than `LOW`, too, has the first panel only.
 
     Raises
     ------
     ValueError
-        If `axes` are not one of so many.
+        If the number of given axes is not allowed.
     """
     with styled(style):
         if axes is not None:
@@ -184,9 +187,13 @@ def panels(
 
 
 def fit(figure: Figure, frozen: bool = False) -> None:
-    """Give all in a figure of ours its place: long labels on several lines, fewer ticks where their labels would touch.
+    """Lay out a figure made here: long labels are broken into lines, ticks whose labels would touch are thinned out.
 
-    What is `frozen` is not laid out again, unless it is in a window.
+    Parameters
+    ----------
+    figure : Figure
+    frozen : bool
+        Keep this layout when the figure is drawn again, unless it is shown in a window.
     """
     _prepare(*(axes for axes in figure.axes if not axes.yaxis.label.get_wrap()))
     settle(figure)
@@ -196,7 +203,7 @@ def fit(figure: Figure, frozen: bool = False) -> None:
 
 
 def _prepare(*drawn: Axes) -> None:
-    """Let long labels have several lines; how many ticks there are must not change when a figure is drawn again elsewhere."""
+    """Allow long axis labels to wrap, and fix the size of tick labels, so that the number of ticks does not change with later rcParams."""
     from matplotlib import rcParams
     from matplotlib.font_manager import FontProperties
 
@@ -214,7 +221,7 @@ def is_frozen(figure: Figure) -> bool:
 
 
 def thin_ticks(*drawn: Axes) -> None:
-    """Fewer ticks where their labels would touch; the figure must have been settled."""
+    """Reduce the number of ticks where their labels would touch; call `settle` first."""
     from matplotlib.ticker import MaxNLocator
 
     for axes in drawn:
@@ -227,7 +234,7 @@ def thin_ticks(*drawn: Axes) -> None:
 
 
 def _crowded(axis: Axis, side: int) -> bool:
-    """Whether labels of neighbouring ticks are less than a good half of a letter apart."""
+    """Whether labels of neighbouring ticks overlap, or (horizontally) are less than 0.6 of a letter's height apart."""
     low, high = sorted(axis.get_view_interval())
     slack = 1e-9 * (high - low)
     ticks = [tick for tick in axis.get_major_ticks() if low - slack <= tick.get_loc() <= high + slack]
@@ -239,22 +246,22 @@ def _crowded(axis: Axis, side: int) -> bool:
 
 
 def settle(figure: Figure) -> None:
-    """Give everything its place, unless nothing has changed since that was done."""
+    """Compute the positions of all artists if the figure has changed since the last time."""
     if figure.stale:
         figure.draw_without_rendering()
 
 
 def legend_below(axes: Axes, handles: Sequence[Artist], own: bool) -> None:
-    """A small legend in as many columns as find room: under everything in a figure of ours, else under the axes.
+    """Draw a small legend with as many columns as fit: at the bottom of a figure made here, otherwise below the axes.
 
     Parameters
     ----------
     axes : Axes
-        A legend that they have goes.
+        Their present legend is removed.
     handles : sequence of Artist
         With labels.
     own : bool
-        Whether the figure is ours to be laid out.
+        Whether the figure was made by `new_figure`.
     """
     from matplotlib import rcParams
     from matplotlib.font_manager import FontProperties
@@ -280,7 +287,7 @@ def legend_below(axes: Axes, handles: Sequence[Artist], own: bool) -> None:
         columns = -(-len(handles) // rows)
         legend = (figure if own else axes).legend(ncols=columns, **place, **look)
     settle(figure)
-    for _ in range(0 if own else 3):  # a layout that makes room for the legend makes the axes lower
+    for _ in range(0 if own else 3):  # the layout lowers the axes for the legend, which moves it again
         box = axes.xaxis.get_tightbbox()
         low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
         gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
@@ -289,7 +296,7 @@ def legend_below(axes: Axes, handles: Sequence[Artist], own: bool) -> None:
 
 
 def windows() -> bool:
-    """Whether the user's session shows pyplot's figures in windows (notebooks show what is returned)."""
+    """Whether pyplot is imported and shows its figures in windows (notebooks do not)."""
     if "matplotlib.pyplot" not in sys.modules:
         return False
     backend = sys.modules["matplotlib.pyplot"].get_backend().lower()
@@ -300,7 +307,7 @@ def _picture_class() -> type[Figure]:
     from matplotlib.figure import Figure
 
     class Picture(Figure):
-        """A figure that shows itself in a notebook, whether or not pyplot has been imported there."""
+        """A figure that a notebook displays even if pyplot has not been imported."""
 
         def _repr_png_(self) -> bytes:
             buffer = BytesIO()
@@ -311,7 +318,7 @@ def _picture_class() -> type[Figure]:
 
 
 class FigureOptions(TypedDict, total=False):
-    """Of any picture."""
+    """Options of all pictures."""
 
     legend: bool | str
     figsize: Size
@@ -319,12 +326,12 @@ class FigureOptions(TypedDict, total=False):
 
 
 class PlotOptions(FigureOptions, total=False):
-    """Of a picture on one pair of axes."""
+    """Options of pictures on one pair of axes."""
 
     axes: Axes | None
 
 
 class PanelOptions(FigureOptions, total=False):
-    """Of a picture on one or several pairs of axes."""
+    """Options of pictures on one or several pairs of axes."""
 
     axes: Axes | Sequence[Axes] | None

@@ -1,4 +1,4 @@
-"""Files: where one can be written under which name, tables as CSV, Python files that a user names, and digests that tell runs apart."""
+"""Files: checks of paths, CSV tables, execution of Python files that a user names, and digests that identify runs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,13 @@ ALSO = {"csv": ("txt",)}  # endings that fit beside the usual one
 
 
 def write_csv(path: str | Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
-    """A line of heads, then one for each row; an OSError where the file cannot be written."""
+    """Write a CSV file: a line with the column heads, then a line per row.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
     with Path(path).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(head)
@@ -40,21 +46,21 @@ def write_csv(path: str | Path, head: Iterable[str], rows: Iterable[Iterable[obj
 
 
 def digest_of(data: object) -> str:
-    """The same for equal data, ready for JSON; in files since version 0.1, so that it stays what it is."""
+    """Return a digest of JSON-able data; stored in files since version 0.1, so it must not change."""
     return hashlib.sha256(json.dumps(data, sort_keys=True, default=str).encode()).hexdigest()
 
 
 def module_of(path: str | Path) -> ModuleType:
-    """The module that a Python file makes when it is run, once in a process as long as its text stays.
+    """Run a Python file and return it as a module; it is run once per process, and again after its text has changed.
 
-    Only for a file that the user has named.
+    Call it only for a file that the user has named.
 
     Raises
     ------
     OSError
         If it cannot be read.
     ValueError
-        If it is no Python file, or does not run.
+        If it is no Python file, or raises an error.
     """
     file = Path(path).resolve()
     digest = hashlib.sha256(str(file).encode() + file.read_bytes()).hexdigest()[:16]
@@ -73,24 +79,24 @@ def module_of(path: str | Path) -> ModuleType:
 
 
 def names_of(module: ModuleType, kind: type) -> list[str]:
-    """Under which names a module has things of a kind."""
+    """Return the names of a module's objects that are instances of a type."""
     return [name for name, value in vars(module).items() if isinstance(value, kind)]
 
 
 def refuse_ending(path: Path, ending: str) -> None:
-    """Refuse a name whose ending is that of another kind of file; no ending and unknown ones are allowed.
+    """Raise an error if a path has the ending of another kind of file; no ending and unknown endings are allowed.
 
     Parameters
     ----------
     path : Path
-        Where something is to be written.
+        Of the file to be written.
     ending : str
-        What will be written, for example "csv".
+        Of its kind, for example "csv".
 
     Raises
     ------
     ValueError
-        With a sentence that names the file and a valid name.
+        If it has; the message suggests a valid name.
     """
     if path.name == "-":
         raise ValueError(
@@ -104,7 +110,7 @@ def refuse_ending(path: Path, ending: str) -> None:
 
 
 def refuse_place(path: Path) -> None:
-    """Refuse, before any work, a place at which no file can be.
+    """Raise an error, before any work, if no file can be written at a path.
 
     Raises
     ------
@@ -119,7 +125,7 @@ def refuse_place(path: Path) -> None:
 
 
 def is_database(path: str | Path) -> bool:
-    """Whether a file starts like a SQLite database."""
+    """Whether a file begins like an SQLite database."""
     try:
         with Path(path).open("rb") as file:
             return file.read(16) == b"SQLite format 3\x00"

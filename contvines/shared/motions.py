@@ -1,4 +1,4 @@
-"""What many starts settle on: where they start, whether it attracts, the kind of a motion that does not recur, and what modulated motions are called."""
+"""Motions on which simulated starts settle: their kinds and names, stability from multipliers, modulation, and low-discrepancy starts."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ import numpy as np
 
 from .numbers import ROUNDED
 
-SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
+SIGMAS = 3.0  # standard errors above zero from which on a Lyapunov exponent means chaos
 P = TypeVar("P", covariant=True)
-KNOWN = 10.0  # times the distance at which the nearest was computed: how well the others are known that are to be on the boundary, too
-GOLDEN = 60  # steps to the root
+# multipliers closer to the stability boundary than this factor times the nearest one's distance lie on it, too
+KNOWN = 10.0
+GOLDEN = 60  # iterations for the root of g^(d+1) = g + 1
 
 
 @dataclass(frozen=True, eq=False)
 class Motion(Generic[P]):
-    """One motion that some starts settle on.
+    """A motion on which some starts settle.
 
     Attributes
     ----------
@@ -28,12 +29,13 @@ class Motion(Generic[P]):
         ``impossible`` (the start lies inside a wall).
     word : str
     periods : int
+        Forcing periods (iterations of a map) after which it recurs.
     problem, u : Problem and float array, or None
-        The motion as a solution that can be continued, where it is one.
+        The motion as a solution that can be continued; None if it is none.
     exponent, error : float
         Largest Lyapunov exponent per period and its standard error; nan for motions that recur.
     state : float array (S,) or None
-        A state on it, from which a simulation goes on.
+        A state on the motion, from which a simulation can continue.
     """
 
     kind: str
@@ -47,18 +49,19 @@ class Motion(Generic[P]):
 
 
 def called(word: str, kind: str) -> str:
-    """What a motion is called: its word, or what kind of motion has none."""
+    """Return the name of a motion: its word, or its kind if it has none."""
     return word or ("no events" if kind == "periodic" else kind)
 
 
 def wandering(exponent: float, error: float, roomy: bool) -> str:
-    """The kind of a motion that does not recur, from its largest Lyapunov exponent and the standard error of it.
+    """Return the kind of a motion that does not recur: chaotic, quasi-periodic, or slow (still settling).
 
     Parameters
     ----------
     exponent, error : float
+        Largest Lyapunov exponent and its standard error.
     roomy : bool
-        Whether the states have room for two incommensurate frequencies.
+        Whether the dimension of the states allows quasi-periodic motions.
     """
     if exponent > SIGMAS * error:
         return "chaotic"
@@ -66,26 +69,28 @@ def wandering(exponent: float, error: float, roomy: bool) -> str:
 
 
 def mean_of_blocks(values: np.ndarray, count: int) -> tuple[float, float]:
-    """Mean of values that follow each other, and its standard error from the scatter of so many blocks."""
+    """Return the mean of a time series, and its standard error from the scatter of the means of `count` blocks."""
     means = np.array([block.mean() for block in np.array_split(values, count)])
     return float(means.mean()), float(means.std(ddof=1) / math.sqrt(count))
 
 
 BAND = ("modulated_low", "modulated_mean", "modulated_high")
-"""Measures: the lowest, mean and highest of the largest responses in each forcing period."""
+"""Names of the measures lowest, mean and highest value of the largest response per forcing period."""
 SILENT = "silent"
-"""A measure: the share of the forcing periods without an impact."""
+"""Name of the measure: share of the forcing periods without an impact."""
 _NAMES = (("weak modulation", "strong modulation"), ("chaotic weak modulation", "chaotic strong modulation"))
 MODULATIONS = frozenset(_NAMES[0] + _NAMES[1])
-"""What a modulated motion may be called, where others have a word."""
-FEW = 0.01  # of the periods without an impact: fewer do not make a modulation strong
-STEADY = 0.001  # of the largest response: one that varies by less, which no table shows, is steady
+"""Names of modulated motions, used in place of a word."""
+FEW = 0.01  # smallest share of periods without an impact in a strong modulation
+STEADY = 0.001  # relative variation of the response below which it is steady; tables do not show less
 
 
 def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
-    """``weak modulation``, ``strong modulation`` where impacts stop and begin again (the strongly modulated response of vibro-impact
-    absorbers), either with ``chaotic`` before it; empty for a motion without a band, such as one that recurs, and for one whose response is steady while
-    the absorber wanders."""
+    """Return the name of a motion's modulation.
+
+    It is ``weak modulation``, or ``strong modulation`` if impacts stop and begin again (the strongly modulated response of vibro-impact
+    absorbers), with ``chaotic`` before it if `chaotic`. It is empty for motions that recur, and for motions with a steady response.
+    """
     low, mean, high = (measures.get(name, math.nan) for name in BAND)
     strong = is_strong(measures)
     if not math.isfinite(mean) or not (strong or high - low > STEADY * abs(high)):
@@ -94,12 +99,12 @@ def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
 
 
 def is_strong(measures: Mapping[str, float]) -> bool:
-    """Whether impacts stop and begin again."""
+    """Whether a modulation is strong: impacts stop and begin again."""
     return FEW <= measures.get(SILENT, 0.0) < 1.0
 
 
 def attracts(sizes: np.ndarray, boundary: float) -> bool | None:
-    """Whether all are below the boundary; None where the largest is on it but for rounding.
+    """Return whether all sizes are below a stability boundary; None if the largest lies on it within rounding.
 
     Parameters
     ----------
@@ -113,9 +118,9 @@ def attracts(sizes: np.ndarray, boundary: float) -> bool | None:
 
 
 def onto_circle(multipliers: np.ndarray, near: float) -> np.ndarray:
-    """Multipliers of a special point, those put on the unit circle that are there by definition: the nearest, and what is not told from it.
+    """Project the critical multipliers of a special point onto the unit circle: the nearest one, and those about as near.
 
-    None is, if the nearest is further from the circle than `near`: as where an event of a virtual orbit grazes.
+    If the nearest one is further from the circle than `near`, none is changed: for example where an event of a virtual orbit grazes.
     """
     sizes = np.abs(multipliers)
     there = _nearest(sizes - 1.0, near)
@@ -123,7 +128,7 @@ def onto_circle(multipliers: np.ndarray, near: float) -> np.ndarray:
 
 
 def onto_axis(eigenvalues: np.ndarray) -> np.ndarray:
-    """The same for eigenvalues and the imaginary axis, on which one always is."""
+    """Project the critical eigenvalues of a special point onto the imaginary axis; the nearest one always is."""
     return np.where(_nearest(np.real(eigenvalues), np.inf), 1j * np.imag(eigenvalues), eigenvalues)
 
 
@@ -134,7 +139,7 @@ def _nearest(gaps: np.ndarray, near: float) -> np.ndarray:
 
 
 def marginal_text(multipliers: Iterable[complex], flow: bool = False) -> str:
-    """Why stability is undecided, from multipliers of which some are on the boundary, and none beyond.
+    """Return the reason why stability is undecided, for multipliers (eigenvalues of a flow) of which some are on the boundary and none beyond.
 
     >>> marginal_text([1.0, 0.3]), marginal_text([-1.0]), marginal_text([0.0, -2.0], flow=True)
     ('marginal: a multiplier is 1', 'marginal: a multiplier is -1', 'marginal: an eigenvalue is 0')
@@ -151,21 +156,21 @@ def marginal_text(multipliers: Iterable[complex], flow: bool = False) -> str:
 
 
 def low_discrepancy(dimension: int, count: int, seed: int, first: int = 0) -> np.ndarray:
-    """Points of the unit cube, shape (count, dimension): an additive recurrence, shifted by the seed.
+    """Return evenly distributed points of the unit cube, shape (count, dimension), by an additive recurrence.
 
     Parameters
     ----------
     dimension, count : int
     seed : int
-        Of the shift (Cranley and Patterson 1976); each seed is another, equally even, set of points.
+        Random seed of a shift of all points (Cranley and Patterson 1976); each seed gives another, equally even, set.
     first : int
-        Number of the first point, so that draws can go on.
+        Number of the first point; a later call can continue the sequence.
 
     Notes
     -----
     Point n is ``shift + n (1/g, 1/g^2, ...) mod 1`` with ``g^(d+1) = g + 1`` (M. Roberts 2018; in one dimension the golden
-    ratio, whose gaps have at most three lengths for every count: the three-distance theorem). Sobol's points of `scipy.stats` would take
-    longer to import than many a diagram takes.
+    ratio, whose gaps have at most three lengths for every count: the three-distance theorem). The import of `scipy.stats` for Sobol's
+    points would take longer than many diagrams.
     """
     root = 2.0
     for _ in range(GOLDEN):

@@ -1,4 +1,4 @@
-"""Names that are nearly right."""
+"""Hints in error messages for misspelt names, unknown arguments and missing arguments."""
 
 import difflib
 import inspect
@@ -9,19 +9,19 @@ from typing import Any, ParamSpec, TypeVar
 
 
 def did_you_mean(given: object, known: Iterable[str]) -> str:
-    """ " (did you mean ...?)" where one of the known names is close, or the same but for capitals, else empty."""
+    """Return " (did you mean ...?)" if a known name is similar, or equal apart from capitals; otherwise an empty text."""
     asked, names = str(given)[:60], [str(name) for name in known]
     close = [name for name in names if name.lower() == asked.lower()]
     close = close or difflib.get_close_matches(asked, names, n=1, cutoff=0.6)
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 
-# what machines are asked beside their parameters, which share one list of keywords with these
+# keyword arguments of machines' methods besides parameters; both share one list of keywords
 ASKED = ("word", "periods", "guess", "start", "count", "seed", "size", "time", "events", "over")
 
 
 def no_parameter(given: object, machine: str, known: Iterable[str]) -> str:
-    """The sentence that a machine has no such parameter, and which it has."""
+    """Return the error message that a machine lacks a parameter, with the names of those that it has."""
     names = list(known)
     return f"{given} is no parameter of {machine}{did_you_mean(given, [name for name in (*names, *ASKED) if name != given])}; it has {', '.join(names)}"
 
@@ -33,16 +33,16 @@ Elsewhere = Callable[[str, Any, Sequence[str]], str]
 
 
 def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Callable[P, R]:
-    """The function; an argument that it does not have is refused with the names that it has, a missing one with its meaning.
+    """Decorate a function with better errors: an unknown argument lists the known names, a missing one quotes its meaning from the docstring.
 
-    A method is called by its class, too, and what makes a thing (``__init__``) by the name of its class alone.
+    Messages name a method with its class, and ``__init__`` by its class alone.
 
     Parameters
     ----------
     function : callable
-        One that takes any arguments is returned as it is: it hands them on.
+        A function with ``**options`` is returned unchanged.
     elsewhere : callable, optional
-        (name, value, known names) -> where the argument belongs, in words, or nothing.
+        ``elsewhere(name, value, known_names)`` returns a text on where an unknown argument belongs, or an empty text.
     """
     known = inspect.signature(function).parameters
     names = [name for name, entry in known.items() if entry.kind is not entry.VAR_KEYWORD]
@@ -76,7 +76,7 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
 def _absent(
     known: Mapping[str, inspect.Parameter], arguments: Sequence[Any], options: Mapping[str, Any]
 ) -> list[str]:
-    """The names of arguments that have to be given and are not."""
+    """Return the names of required arguments that are missing."""
     by_position = [name for name, entry in known.items() if entry.kind <= entry.POSITIONAL_OR_KEYWORD]
     given = {*by_position[: len(arguments)], *options}
     return [
@@ -87,13 +87,13 @@ def _absent(
 
 
 def _meaning(page: str | None, name: str) -> str:
-    """What a docstring in numpydoc says of an argument, up to the end of its first sentence; nothing if it is silent."""
+    """Return the first sentence about an argument in a numpydoc docstring; an empty text if there is none."""
     entry = re.search(rf"^{name} : .*\n((?: {{4}}.*\n?)+)", page or "", re.MULTILINE)
     return re.split(r"[.;](?:\s|$)", " ".join(entry[1].split()))[0] if entry else ""
 
 
 def hinted(thing: type[T], elsewhere: Elsewhere | None = None) -> type[T]:
-    """The class; its public methods, and what makes it, are `hinting`."""
+    """Decorate the public methods and ``__init__`` of a class with `hinting`."""
     for name, member in list(vars(thing).items()):
         if inspect.isfunction(member) and (name == "__init__" or not name.startswith("_")):
             setattr(thing, name, hinting(member, elsewhere))

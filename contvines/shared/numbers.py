@@ -1,4 +1,4 @@
-"""Facts of double precision, by name, and numbers for people."""
+"""Constants of double precision, and formatting of numbers for tables and messages."""
 
 from __future__ import annotations
 
@@ -7,36 +7,36 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 
 EPSILON = sys.float_info.epsilon
-"""Distance from one to the next number: relative error of a rounding, twice over."""
+"""Distance from one to the next number: twice the largest relative rounding error."""
 ROUNDED = 64.0 * EPSILON
-"""Relative size of what is rounding after some tens of operations."""
+"""Relative size of rounding errors after some tens of operations."""
 TINY = sys.float_info.min
-"""The smallest number with all its digits: stands for a zero that is divided by."""
+"""Smallest normal number; replaces a zero divisor."""
 PIVOT = 1e-300
-"""Stands for a pivot that is zero; native/ has the same."""
+"""Replaces a zero pivot; native/ has the same constant."""
 CENTRAL = EPSILON ** (1.0 / 3.0)
-"""Relative step of a central difference at which rounding and the third derivative weigh the same (Nocedal and Wright, section 8.1)."""
+"""Relative step of a central difference at which rounding error and truncation error are equal (Nocedal and Wright, section 8.1)."""
 LEAST = 1e-18
-"""Takes the place of singular values that are zero, relative to the largest: below all that rounding leaves of them."""
+"""Replaces zero singular values, relative to the largest one; smaller than rounding errors of them."""
 COMPLEX_STEP = 1e-40
-"""Imaginary step of a derivative (Squire and Trapp, SIAM Review 40 (1998) 110): its square vanishes beside any number of a problem."""
+"""Imaginary step of a complex-step derivative (Squire and Trapp, SIAM Review 40 (1998) 110); its square is negligible beside any number."""
 
 
-ROUNDING_APART = 1e-6  # beside what is to be told apart this is zero
-PART = 0.001  # of an interval, which can be told apart in tables
-WHOLE = 1_000_000.0  # numbers below it have no exponent
-DIGITS = 4  # that mean something to who reads a table; files and JSON have all
+ROUNDING_APART = 1e-6  # relative to the difference that must stay visible: smaller numbers are shown as zero
+PART = 0.001  # of an interval: differences of this size stay visible in tables
+WHOLE = 1_000_000.0  # numbers below it are shown without exponent
+DIGITS = 4  # significant digits in tables; files and JSON have all digits
 
 
 def number_text(value: float, digits: int = 10, unit: float = 1.0) -> str:
-    """A number with so many digits; what is only rounding beside ``unit`` is 0."""
+    """Format a number with `digits` significant digits; a number that is only a rounding error relative to ``unit`` becomes 0."""
     return "0" if abs(value) <= ROUNDED * abs(unit) else f"{value:.{digits}g}"
 
 
 def figures(value: float, apart: float = 0.0) -> str:
-    """A number as tables for people have it: four digits, and more where numbers so far `apart` would look the same.
+    """Format a number for tables: four significant digits, and more if numbers that differ by `apart` would look equal.
 
-    What is a millionth of `apart` or rounding beside one is 0; numbers below a million have no exponent.
+    Numbers below a millionth of `apart`, or below rounding errors relative to one, become 0; numbers below a million have no exponent.
 
     >>> [figures(x) for x in (86.9812, 0.0123456, 12345.6, 1.5e7, 0.7)]
     ['86.98', '0.01235', '12346', '1.5e+07', '0.7']
@@ -54,7 +54,7 @@ def figures(value: float, apart: float = 0.0) -> str:
 
 
 def complex_figures(values: Iterable[complex]) -> str:
-    """`figures` of complex numbers such as multipliers; what lies near the unit circle can be distinguished from it.
+    """Format complex numbers such as multipliers by `figures`, with enough digits to distinguish them from the unit circle.
 
     >>> complex_figures([-0.22232 + 0.26142j, 0.999987])
     '-0.2223 + 0.2614i, 0.99999'
@@ -69,14 +69,17 @@ def complex_figures(values: Iterable[complex]) -> str:
 
 
 def pairs(values: Iterable[complex]) -> list[list[float]]:
-    """Complex numbers as JSON has them: real and imaginary part."""
+    """Return complex numbers as pairs of real and imaginary part, for JSON."""
     return [[float(value.real), float(value.imag)] for value in values]
 
 
 def figures_in(
     within: tuple[float, float], others: Sequence[float] = (), same: float = 0.0
 ) -> Callable[[float], str]:
-    """`figures` for values of a parameter in an interval: a thousandth of it can be distinguished, and so can those of some values that are farther than `same` apart."""
+    """Return `figures` for values of a parameter in an interval, with enough digits to distinguish a thousandth of the interval.
+
+    The values `others` are distinguished as well, unless they are closer than `same`.
+    """
     width = within[1] - within[0]
     apart = PART * width if 0.0 < width < math.inf else 0.0
     known = sorted(others)

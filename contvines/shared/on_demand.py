@@ -1,4 +1,4 @@
-"""What is imported when it is first asked for: names of a package, and packages of an extra, with how one is installed."""
+"""Imports on first use: names of a package from its modules, and optional packages, with the command that installs them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,14 @@ from types import ModuleType
 
 
 def on_demand(package: str, homes: Mapping[str, str]) -> Callable[[str], object]:
-    """The ``__getattr__`` of a package: each name is taken from the module that holds it; ``homes`` has the modules by name.
+    """Return a ``__getattr__`` for a package that imports names on first use.
 
-    A home that is a module of the name itself is handed out whole.
+    Parameters
+    ----------
+    package : str
+        Name of the package.
+    homes : mapping
+        Module of each name. For a name with the module ``package.name``, the module itself is returned.
     """
 
     def find(name: str) -> object:
@@ -32,7 +37,7 @@ def on_demand(package: str, homes: Mapping[str, str]) -> Callable[[str], object]
 
 
 def pip_install(extra: str) -> str:
-    """The command that adds an extra to the package as it is installed: from PyPI, or from the copy that `pip install .` was given."""
+    """Return the command that installs an extra, from the same source as the package: PyPI, or a local folder."""
     import json
     from importlib.metadata import PackageNotFoundError, distribution
     from pathlib import Path
@@ -51,12 +56,12 @@ def pip_install(extra: str) -> str:
 
 
 def needed(name: str, extra: str) -> ModuleType:
-    """A package of an extra.
+    """Import and return a package that an extra installs.
 
     Raises
     ------
     ValueError
-        If it is not installed.
+        If it is not installed; the message has the command that installs it.
     """
     try:
         return import_module(name)

@@ -1,9 +1,9 @@
-"""Work spread over processes of this machine: each does one piece at a time, and one that is lost loses that piece alone.
+"""Work in several processes of this computer: each does one piece at a time, and if a process dies only its piece must be repeated.
 
-Processes begin as copies of this one where that is safe, else from nothing. A copy has all modules and compiled functions at once; a
-process that begins from nothing spends a second or two of processor time on them. But a copy has only the thread that made it: what
-another one had locked stays locked for ever. So there are copies on Linux only (libraries of other systems do not bear them), and only
-of a process with one thread.
+Processes are forked from this one if that is safe, otherwise spawned. A fork has all modules and compiled functions at once; a spawned
+process spends a second or two of processor time on them. But a fork has only the thread that made it: a lock that another thread held
+stays locked for ever. Processes are therefore forked only on Linux (libraries of other systems do not support it), and only from a
+process with one thread.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-THREADS = Path("/proc/self/task")  # a folder per thread
-ATTEMPTS = 3  # at one piece whose process is lost
-PATIENCE = 10.0  # seconds until a copy that does nothing counts as stuck
+THREADS = Path("/proc/self/task")  # has a folder per thread of this process
+ATTEMPTS = 3  # attempts at a piece of work whose process dies
+PATIENCE = 10.0  # seconds after which a fork that should end at once counts as stuck
 
 
 def may_be_copied() -> bool:
-    """Whether a copy of this process can go on by itself."""
+    """Whether this process can be forked safely."""
     if not sys.platform.startswith("linux") or threading.active_count() > 1 or not THREADS.is_dir():
         return False
     if _threads() > 1:
-        # libraries of linear algebra keep threads that they end before a process is copied, and begin anew when they need them: after
-        # an idle copy those that are left belong to somebody who knows nothing of copies
+        # libraries of linear algebra end their threads before a fork and restart them when needed: threads that are left after an idle
+        # fork belong to code that does not support forks
         return _idle_copy_ends() and _threads() == 1
     return True
 
@@ -45,12 +45,13 @@ def _threads() -> int:
 
 
 def _idle_copy_ends() -> bool:
-    """Whether a copy that does nothing ends: what libraries do where one begins may wait for a thread that is not in it."""
+    """Whether a fork that does nothing ends: handlers of libraries that run at a fork may wait for a thread that it does not have."""
     from multiprocessing.connection import wait
 
-    end, other = os.pipe()  # it is at its end where nobody holds the other one
+    # `end` becomes readable once all processes have closed `other`: at the fork's exit
+    end, other = os.pipe()
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # Python's own, of copies beside threads
+        warnings.simplefilter("ignore", DeprecationWarning)  # Python warns of forks beside threads
         copy = os.fork()
     if copy == 0:
         os._exit(0)
@@ -66,19 +67,20 @@ def _idle_copy_ends() -> bool:
 def spread(
     work: Callable[..., Any], pieces: Sequence[tuple[Any, ...]], count: int, lost: Callable[[int], Any]
 ) -> Generator[tuple[int, Any], None, None]:
-    """``work(*piece)`` of each piece in `count` processes: the piece's place and its result, as they come.
+    """Call ``work(*piece)`` for each piece in `count` processes; yield (index of the piece, result) in the order of completion.
 
-    Where the iteration is left early (close it), the processes are ended amid their work.
+    Closing the generator early kills the processes.
 
     Parameters
     ----------
     work : callable
-        To be found by its name, as whatever the pieces consist of.
+        It and the pieces must be picklable.
     pieces : sequence of tuple
     count : int
+        Number of processes.
     lost : callable
-        ``lost(place)`` stands for the result of a piece whose process ended `ATTEMPTS` times, and of all that are left where that many
-        processes in a row ended before they could begin.
+        ``lost(index)`` is the result of a piece whose process died `ATTEMPTS` times, and of all pieces left if that many processes in a
+        row died before they could begin.
 
     Raises
     ------
@@ -102,7 +104,7 @@ def spread(
             for worker in team.values():
                 if worker.ready and worker.place is None and waiting:
                     worker.give(waiting.pop(), pieces)
-            yield from answers  # while the next pieces are worked on
+            yield from answers  # meanwhile the workers do the next pieces
             answers = []
             for connection in wait(list(team)):
                 worker = team[connection]
@@ -137,7 +139,7 @@ def spread(
 
 
 class _Worker:
-    """One process, from the side of that which asks: `ready` once it has begun, `place` of the piece that it works on."""
+    """A worker process as the parent sees it: `ready` once it has begun, and the index `place` of its piece."""
 
     def __init__(self, work: Callable[..., Any]) -> None:
         from multiprocessing import get_context
@@ -151,20 +153,21 @@ class _Worker:
 
     def give(self, place: int, pieces: Sequence[tuple[Any, ...]]) -> None:
         self.place = place
-        with suppress(OSError):  # it has ended, which is noticed where its answer is read
+        with suppress(OSError):  # the worker has died, which is noticed when its answer is read
             self.connection.send(pieces[place])
 
     def end(self) -> None:
-        self.process.kill()  # it has nothing to put in order, and a signal that it may refuse would be waited for
+        self.process.kill()  # not terminate: the worker could ignore that signal, and `join` would wait for ever
         self.process.join()
         self.connection.close()
 
 
 def _serve(connection: Connection, work: Callable[..., Any]) -> None:
-    """What such a process does."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that asks decides when to stop
+    """Main loop of a worker process: receive pieces, send back (failed, result or error)."""
+    # Ctrl-C reaches all processes; the parent decides when to stop
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    gc.freeze()  # what a copy begins with is never looked through: that would copy its memory, page by page
+    gc.freeze()  # the collector would write to inherited objects and so copy the parent's memory, page by page
     gc.set_threshold(200_000, 20, 100)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     connection.send((False, None))
@@ -181,7 +184,7 @@ def _serve(connection: Connection, work: Callable[..., Any]) -> None:
 
 
 def _portable(error: Exception) -> Exception:
-    """The error itself, or one with its words where it cannot be sent."""
+    """Return the error, or a RuntimeError with its text if it cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
@@ -190,7 +193,7 @@ def _portable(error: Exception) -> Exception:
 
 
 def _end_with_parent() -> None:
-    """A process that is killed outright cannot end its workers: they would wait for it for ever."""
+    """Wait for the parent process and exit when it ends; a killed parent cannot end its workers, which would wait for ever."""
     from multiprocessing import parent_process
 
     parent = parent_process()

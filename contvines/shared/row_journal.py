@@ -1,6 +1,6 @@
-"""The rows of an unfinished sweep or survey on disk: one that is killed goes on from them.
+"""Journal of the rows of an unfinished sweep or survey on disk, from which a killed run resumes.
 
-A line is a JSON text with a checksum before it; from the first damaged line on, rows are worked out again.
+Each line is a checksum and a JSON text; rows from the first damaged line on are computed again.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ R = TypeVar("R")
 
 
 class Rows(Generic[R]):
-    """The rows that are there, each kept as soon as it is.
+    """Rows computed so far, `found`, each written to disk at once. Use it as a context manager.
 
     Parameters
     ----------
     path : Path or None
-        Where; None keeps nothing.
+        Of the journal; None: nothing is stored on disk.
     header : mapping
-        What decides the rows: those of another run are not taken over.
+        Everything that determines the rows; rows under another header are not reused.
     kind : type
-        Makes a row of its attributes by name, which JSON has.
+        Class of the rows; called with the attributes by name, which must be JSON-able.
     """
 
     def __init__(self, path: Path | None, header: Mapping[str, Any], kind: Callable[..., R]) -> None:
@@ -43,12 +43,12 @@ class Rows(Generic[R]):
         return self
 
     def keep(self, row: R) -> None:
-        """One more row."""
+        """Add a row and write it to disk."""
         self.found.append(row)
         self._line(vars(row))
 
     def finish(self) -> None:
-        """The run is complete and kept elsewhere."""
+        """Delete the journal, once the run is complete and its result stored elsewhere."""
         self.__exit__()
         if self.path is not None:
             self.path.unlink(missing_ok=True)
@@ -65,7 +65,7 @@ class Rows(Generic[R]):
             self.file.flush()
 
     def _read(self, path: Path) -> int:
-        """Take over the rows of the same run; the length in bytes of what is whole."""
+        """Read the rows of a journal with the same header; return the length in bytes of its undamaged part."""
         length = 0
         if path.is_file():
             self.found = []
@@ -77,18 +77,18 @@ class Rows(Generic[R]):
                         self.found.append(self.kind(**_data(line)))
                         length += len(line) + 1
             except (ValueError, TypeError, RecursionError):
-                pass  # a line that a kill cut short
+                pass  # a line cut short by a kill
         return length
 
 
 def rows_of_another(path: Path, header: Mapping[str, Any]) -> int:
-    """How many rows of another run of the same kind a file holds.
+    """Return the number of rows in a journal of another run of the same kind; 0 for any other file.
 
     Parameters
     ----------
     path : Path
     header : mapping
-        Of this run; the kind is its entry ``contvines``.
+        Of this run; its entry ``contvines`` is the kind of run.
     """
     try:
         first, *rows = path.read_bytes().split(b"\n")
@@ -100,12 +100,12 @@ def rows_of_another(path: Path, header: Mapping[str, Any]) -> int:
 
 
 def _data(line: bytes) -> Any:
-    """What a line says; those of sweeps had no checksum once.
+    """Return the data of a line; lines without checksum are from early versions.
 
     Raises
     ------
     ValueError
-        If its checksum is another.
+        If the checksum is wrong.
     """
     kept, _, text = line.partition(b" ")
     if line.startswith(b"{"):
