@@ -1,11 +1,11 @@
-"""The brusselator on a line, u_t = D u_xx + A - (b + 1) u + u^2 v and v_t = E v_xx + b u - u^2 v, no flux at the ends."""
+"""Brusselator on a line: u_t = D u_xx + A - (b + 1) u + u^2 v and v_t = E v_xx + b u - u^2 v, without flux at the ends."""
 
 import numpy as np
 import scipy.sparse as sp
 
 
 def brusselator(m, A, D, E):
-    """Equations, sparse Jacobian and derivative by b for m cells; unknowns u_0, v_0, u_1, v_1 ...: functions of (w, b)."""
+    """Return functions of (w, b) for m cells: equations, sparse Jacobian and derivative by b; the unknowns w are u_0, v_0, u_1, v_1 ..."""
     line = sp.diags_array([np.ones(m - 1), -2.0 * np.ones(m), np.ones(m - 1)], offsets=[-1, 0, 1]).tolil()
     line[0, 0] = line[m - 1, m - 1] = -1.0
     order = np.arange(2 * m).reshape(2, m).T.reshape(-1)

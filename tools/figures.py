@@ -1,6 +1,7 @@
-"""The figures that say how much there is to carry: ``python -m tools.figures``.
+"""Measure the size of the code: ``python -m tools.figures``.
 
-Tokens are those of Python's own tokenizer without comments, docstrings and line ends; of the native core, words and signs without comments.
+Tokens of Python are those of its own tokenizer without comments, docstrings and line ends; tokens of the native core are words and signs
+without comments.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ SMALL_FLOAT = re.compile(r"^\d+(\.\d*)?[eE][-+]?\d+$")
 
 
 def files(*folders: str) -> Iterator[Path]:
-    """Source files below some folders of the repository."""
+    """Yield the source files in some folders of the repository."""
     for folder in folders:
         for path in sorted((TOP / folder).rglob("*")):
             if path.suffix in (".py", ".hpp", ".cpp", ".h") and "__pycache__" not in path.parts:
@@ -39,7 +40,7 @@ def files(*folders: str) -> Iterator[Path]:
 
 
 def docstring_lines(text: str) -> set[int]:
-    """Lines on which docstrings begin."""
+    """Return the lines on which docstrings begin."""
     found = set()
     for node in ast.walk(ast.parse(text)):
         body = getattr(node, "body", None)
@@ -51,7 +52,7 @@ def docstring_lines(text: str) -> set[int]:
 
 
 def python_tokens(text: str) -> Iterator[tokenize.TokenInfo]:
-    """Tokens of a Python file that are neither comment nor docstring nor line end."""
+    """Yield the tokens of a Python file without comments, docstrings and line ends."""
     skipped = docstring_lines(text)
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type in SILENT or (token.type == tokenize.STRING and token.start[0] in skipped):
@@ -60,7 +61,7 @@ def python_tokens(text: str) -> Iterator[tokenize.TokenInfo]:
 
 
 def count_tokens(path: Path) -> int:
-    """Tokens of one file."""
+    """Number of tokens of one file."""
     text = path.read_text()
     if path.suffix == ".py":
         return sum(1 for _ in python_tokens(text))
@@ -68,7 +69,7 @@ def count_tokens(path: Path) -> int:
 
 
 def small_floats(path: Path) -> int:
-    """Numbers in scientific notation in a Python file."""
+    """Number of constants in scientific notation in a Python file."""
     if path.suffix != ".py":
         return 0
     tokens = python_tokens(path.read_text())
@@ -76,12 +77,12 @@ def small_floats(path: Path) -> int:
 
 
 def any_types(path: Path) -> int:
-    """Annotations that are `Any` alone, of arguments, attributes and returned values."""
+    """Number of annotations that consist of `Any` alone."""
     return len(re.findall(r"(?::|->) Any\b", path.read_text())) if path.suffix == ".py" else 0
 
 
 def executed_files() -> int:
-    """Files of the two packages in which a function or a module's body runs during one diagram, from TOML to picture."""
+    """Number of files of the two packages whose code runs during one diagram, from TOML to picture."""
     script = """
 import os, sys, tempfile, shutil, pathlib
 seen = set()
@@ -109,7 +110,7 @@ print(len(own), file=sys.stderr)
 
 
 def figures(run: bool = True) -> dict[str, int]:
-    """All figures, by what they count."""
+    """Return all figures by name; `run` includes those for which a diagram is computed."""
     source, tests, tools = list(files(*SOURCE)), list(files("tests")), list(files("tools"))
     found = {
         "tokens of the source": sum(map(count_tokens, source)),

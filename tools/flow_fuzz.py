@@ -1,11 +1,11 @@
-"""Drawn polynomial flows: is what their atlas says of stability true, and has it what simulation settles on?
+"""Check atlases of random polynomial flows: is the stability of branches right, and does the atlas contain all motions on which simulations settle?
 
-``python -m tools.flow_fuzz COUNT [--first SEED] [--salt SALT]`` prints findings as they come, then what was tried.
+``python -m tools.flow_fuzz COUNT [--first SEED] [--salt SALT]`` prints each finding (an error of an atlas), then the numbers of checks.
 
-    x' = A x + p (b + B x) + Q(x, x) - |x|^2 D x        with positive D, so that nothing escapes
+    x' = A x + p (b + B x) + Q(x, x) - |x|^2 D x        with positive D, so that all motions stay bounded
 
-Equilibria and cycles of its branches are judged by eigenvalues and by the variational equations along a simulation, motions from random
-starts by the distance from what the branches have at the same value.
+Stability of equilibria and cycles is checked by eigenvalues and by the variational equations along a simulation. Motions from random
+starts are checked by their distance from the solutions of the branches at the same parameter value.
 """
 
 from __future__ import annotations
@@ -28,27 +28,30 @@ from contvines.continuation.engine import Engine, Solved
 
 WITHIN = (-1.0, 1.0)
 BOX = 2.5
-EACH = 3  # solutions of each branch
-PLACES, STARTS = 3, 4  # values at which motions are simulated, and motions at each
-SPAN = 50.0  # times after which a motion has settled, if it settles soon; up to 64 times that otherwise
-EDGE = 1e-5  # multipliers (eigenvalues) so near to the boundary are not judged
-PIECES = 40  # simulations along a cycle, each of which starts on it, to begin with ...
-GROWTH = 1e3  # ... and more, until none grows by more than that, as beside a saddle
-CLOSED = 1e-6  # distance of a simulation from a cycle, relative to its size, times the growth
-NEAR = 2e-3  # relative distance of a motion from the one on which it has settled
-RETURNS = 12  # after which a motion that has settled must have returned, to be periodic
-RECURS = 1e-6
+EACH = 3  # solutions of each branch that are checked
+PLACES, STARTS = 3, 4  # parameter values at which motions are simulated, and motions at each
+SPAN = 50.0  # first duration of a simulation; it is extended to 8 and 64 times that if the motion has not settled
+EDGE = 1e-5  # stability is not checked if a multiplier (eigenvalue) is nearer to the stability boundary
+PIECES = 40  # initial number of simulations along a cycle, each of which begins on it
+GROWTH = 1e3  # largest growth in one simulation; above it (near a saddle) the simulation is halved
+CLOSED = 1e-6  # largest distance of a simulation from a cycle, relative to its size and the growth
+NEAR = 2e-3  # largest distance of a settled motion from a solution, relative to its size
+RETURNS = 12  # most returns to a section after which a periodic motion closes
+RECURS = 1e-6  # largest difference of returns of a periodic motion, relative to its size
 
 
 @dataclass
 class Drawn:
-    """A drawn flow.
+    """A random flow; see the docstring of the module.
 
     Attributes
     ----------
     linear, by_parameter, damping : ndarray, shape (d, d)
+        A, B and D.
     constant : ndarray, shape (d,)
+        b.
     square : ndarray, shape (d, d, d)
+        Q.
     """
 
     linear: np.ndarray
@@ -58,7 +61,7 @@ class Drawn:
     square: np.ndarray
 
     def rates(self, x: Any, p: Any) -> Any:
-        """f(x, p), for arrays as well."""
+        """Return f(x, p) for a state (d,) or for many states (d, m)."""
         x = np.asarray(x)
         if x.ndim == 1:
             linear = (self.linear + p * self.by_parameter) @ x + p * self.constant
@@ -70,19 +73,19 @@ class Drawn:
         return linear + self.square.reshape(len(x), -1) @ products - (x * x).sum(axis=0) * (self.damping @ x)
 
     def jacobian(self, x: np.ndarray, p: float) -> np.ndarray:
-        """df/dx at a state."""
+        """Return df/dx at a state."""
         bent = np.einsum("ijk,k->ij", self.square + self.square.transpose(0, 2, 1), x)
         cubic = x @ x * self.damping + 2.0 * np.outer(self.damping @ x, x)
         return self.linear + p * self.by_parameter + bent - cubic
 
     def simulated(self, x: np.ndarray, p: float, span: float, **options: Any) -> Any:
-        """A motion, by scipy."""
+        """Simulate a motion with scipy."""
         return solve_ivp(
             lambda t, y: self.rates(y, p), (0.0, span), x, method="DOP853", rtol=1e-9, atol=1e-10, **options
         )
 
     def monodromy(self, x: np.ndarray, p: float, period: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """State and its derivative after a period, and the largest entry of the derivative until then."""
+        """Return the state after a period, its derivative by the initial state, and the largest entry of this derivative until then."""
         d = len(x)
 
         def rate(t: float, y: np.ndarray) -> np.ndarray:
@@ -95,7 +98,7 @@ class Drawn:
 
 
 def drawn(salt: int, seed: int) -> Drawn:
-    """The flow of a seed: two to four states."""
+    """Draw the flow of a seed; it has two to four states."""
     rng = np.random.default_rng([salt, seed])
     d = 2 + seed % 3
     return Drawn(
@@ -109,19 +112,19 @@ def drawn(salt: int, seed: int) -> Drawn:
 
 @dataclass
 class Judged:
-    """What was tried of one flow, and what was found to be false."""
+    """Checks of one flow: numbers by kind (`tried`), and errors of its atlas (`findings`)."""
 
     name: str
     tried: Counter[str] = field(default_factory=Counter)
     findings: list[str] = field(default_factory=list)
 
     def find(self, what: str) -> None:
-        """Keep a finding."""
+        """Add a finding."""
         self.findings.append(f"{self.name}: {what}")
 
 
 def atlas_of(flow: Drawn) -> cv.Graph:
-    """Its atlas."""
+    """Compute the atlas of a flow."""
     d = len(flow.constant)
     problem = cv.FlowProblem(flow.rates, np.zeros(d), 0.0, name="drawn")
     population = problem.population("p", box=[(-BOX, BOX)] * d)
@@ -129,7 +132,7 @@ def atlas_of(flow: Drawn) -> cv.Graph:
 
 
 def judge(salt: int, seed: int) -> Judged:
-    """Draw a flow and judge its atlas."""
+    """Draw a flow, compute its atlas and check it."""
     flow, rng = drawn(salt, seed), np.random.default_rng([salt, seed, 1])
     done = Judged(f"salt {salt}, seed {seed}")
     graph = atlas_of(flow)
@@ -153,7 +156,7 @@ def judge(salt: int, seed: int) -> Judged:
 
 
 def _curve(u: np.ndarray, p: float, problem: Any) -> np.ndarray:
-    """States along a solution: one, or many."""
+    """Return states along a solution: one for an equilibrium, many for a cycle."""
     if problem.spectrum == "flow":
         return np.asarray(u, dtype=float)[None]
     orbit = problem.orbit(u, p)
@@ -161,7 +164,7 @@ def _curve(u: np.ndarray, p: float, problem: Any) -> np.ndarray:
 
 
 def _stability(flow: Drawn, branch: Any, i: int, place: float, done: Judged) -> None:
-    """Whether a solution between two points of a branch is as stable as these."""
+    """Check that a solution between two points of a branch is stable or unstable as these are."""
     stable, none = bool(branch.stable[i]), (np.zeros(0), 0.0, 0.0, 0.0)
     engine = Engine(branch.problem, WITHIN, Settings())
     first, last = (
@@ -205,7 +208,7 @@ def _stability(flow: Drawn, branch: Any, i: int, place: float, done: Judged) -> 
 
 
 def _largest_multiplier(maps: list[np.ndarray]) -> float:
-    """The largest modulus but for the trivial multiplier: the block-cyclic matrix of the maps has all their N-th roots as eigenvalues."""
+    """Largest modulus of the nontrivial multipliers; the block-cyclic matrix of the N maps has all N-th roots of the multipliers as eigenvalues."""
     count, d = len(maps), len(maps[0])
     whole = np.zeros((count * d, count * d))
     for i, matrix in enumerate(maps):
@@ -224,7 +227,7 @@ def _settles(
     graph: cv.Graph,
     done: Judged,
 ) -> None:
-    """Whether a branch has what a motion settles on."""
+    """Check that a branch contains the motion on which a simulation settles."""
     if any(a <= p <= b for a, b in graph.settings.get("unknown") or ()):
         done.tried["motions where the atlas says that it knows of none"] += 1
         return
@@ -252,7 +255,7 @@ def _settles(
 
 
 class _Section:
-    """An event of scipy: a plane is passed, forwards."""
+    """Event of scipy: the motion passes a plane in the direction of its normal."""
 
     terminal, direction = False, 1.0
 
@@ -270,7 +273,7 @@ def _on(x: np.ndarray, curve: np.ndarray) -> bool:
 
 
 def main() -> int:
-    """Search; 1 if something was found."""
+    """Check all flows; return 1 if there are findings."""
     parser = argparse.ArgumentParser(description="Search for false results of flows.")
     parser.add_argument("count", type=int, help="flows")
     parser.add_argument("--first", type=int, default=0, metavar="SEED")

@@ -1,6 +1,6 @@
-"""Write the golden files of some studies, or of all that have none yet: `python -m tools.freeze_golden [NAME ...]`.
+"""Write golden files of the named studies, or of all that have none: `python -m tools.freeze_golden [NAME ...]`.
 
-A golden file changes only where an independent proof says that it was wrong; the reason stands in `changes.md`.
+Change a golden file only if an independent proof shows that it was wrong, and write the reason into `changes.md`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from tests.golden.studies import file_of, studies
 
 
 def main(names: list[str]) -> None:
+    """Write the golden files."""
     known = studies()
     for name in names or [name for name in known if not file_of(name).exists()]:
         began = time.process_time()

@@ -1,6 +1,6 @@
-"""Pictures of the gallery: `python -m tools.gallery [NAME ...]` runs the examples and keeps a small picture of each in docs/gallery.
+"""Make the pictures of the gallery: `python -m tools.gallery [NAME ...]` runs the examples and writes a small picture of each to docs/gallery.
 
-`docs/gallery_pages.py` makes a page of every example of them when the site is built.
+When the site is built, `docs/gallery_pages.py` makes a page for every example with its picture.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ matplotlib.use("Agg")
 TOP = Path(__file__).parents[1]
 EXAMPLES, PICTURES = TOP / "examples", TOP / "docs" / "gallery"
 sys.path.insert(0, str(TOP / "docs"))  # gallery_pages
-WIDTH = 760  # pixels
-COLUMN = 3.4  # inches, of the figures of the paper: panels stand one above another
-SIZE = (5.2, 3.4)  # inches, of pictures that have no size of their own
+WIDTH = 760  # width of a picture in pixels
+COLUMN = 3.4  # width in inches of the paper's figures, whose panels are placed one above another
+SIZE = (5.2, 3.4)  # size in inches of pictures without a size of their own
 
 PLAIN = {
     "henon": lambda module: module["main"]().plot(y="x0", ylim=(-2.0, 4.0), figsize=SIZE),
@@ -28,14 +28,16 @@ PLAIN = {
     "neutral_saddle": lambda module: module["main"]().plot(y="u1", figsize=SIZE),
     "absorber": lambda module: module["main"]().plot(y="B", figsize=SIZE),
 }
-"""Scripts that leave the picture to their user -> figure from the names of the script."""
+"""Scripts that draw no picture: name -> function that draws one from the script's global names."""
 
 
 def _script(path: Path, *words: str) -> None:
+    """Run a script with these arguments."""
     subprocess.run([sys.executable, str(path), *words], check=True)
 
 
 def _study(path: Path) -> None:
+    """Run a study with its command and draw the result."""
     from gallery_pages import verb_of
 
     contvines = [sys.executable, "-m", "contvines.command"]
@@ -48,7 +50,7 @@ def _study(path: Path) -> None:
 
 
 def draw(path: Path) -> None:
-    """Draw one example; its picture is the only .png in the working folder then."""
+    """Draw one example; its picture becomes the only .png in the working folder."""
     if path.suffix == ".toml":
         _study(path)
     elif path.parent.name == "machines":
@@ -62,7 +64,7 @@ def draw(path: Path) -> None:
 
 
 def keep(path: Path, name: str) -> None:
-    """Shrink a picture into docs/gallery; its colours stay true to a few parts of 255."""
+    """Write a picture in reduced size to docs/gallery; colours change by a few parts of 255."""
     from PIL import Image
 
     with Image.open(path) as image:
@@ -72,7 +74,7 @@ def keep(path: Path, name: str) -> None:
 
 
 def main(names: list[str]) -> None:
-    """Draw the examples of these names, or all of them."""
+    """Draw the examples with these names, or all of them."""
     import contextlib
     import os
     import time

@@ -1,4 +1,4 @@
-"""Write starts.json: a first orbit of every golden machine, found once. `python -m tools.golden_starts`."""
+"""Write starts.json with a first orbit of every golden machine: `python -m tools.golden_starts`."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ UNFINISHED = {
     "cavity 14",
     "cavity 15",
     "cavity 17",
-}  # more than 25 branches: where to stop is a matter of order
+}  # more than 25 branches, so that the set of computed branches depends on their order
 SALT = 500
 
 
 def examples() -> dict[str, Any]:
-    """The studies of the folder of examples that are in machine's own numbers."""
+    """Return the starts of studies in the examples folder with dimensionless machines."""
     found = {}
     for name in ("friction", "friction_low", "frequency", "bouncing_ball"):
         study = tomllib.loads((EXAMPLES / f"{name}.toml").read_text())
@@ -64,7 +64,7 @@ def examples() -> dict[str, Any]:
 
 
 def stored(kind: str, orbit: Any, options: dict[str, Any]) -> dict[str, Any]:
-    """A start as plain data."""
+    """Return a start as plain data."""
     values = dict(orbit.parameters)
     given = {}
     if kind in MACHINES:
@@ -79,13 +79,14 @@ def stored(kind: str, orbit: Any, options: dict[str, Any]) -> dict[str, Any]:
         "periods": orbit.periods,
         "nodes": None
         if kind == "den_hartog.py"
-        else orbit.nodes.tolist(),  # turns both ways share the letter t
+        else orbit.nodes.tolist(),  # its turns in both directions have the same letter t
         "values": values,
         "options": options,
     }
 
 
 def main() -> None:
+    """Compute all starts and write them."""
     found = examples()
     for name, (kind, given, word, values, options) in CHOSEN.items():
         found[name] = stored(kind, MACHINES[kind](**given).orbit(word, 1, **values), options)

@@ -1,11 +1,11 @@
-"""Machine files drawn at random against an integration of Newton's laws that shares no code: `python -m tools.machine_files COUNT [--first SEED] [--salt SALT]`.
+"""Compare random machine files with an independent integration of Newton's laws: `python -m tools.machine_files COUNT [--first SEED] [--salt SALT]`.
 
-A machine has one to three bodies on springs and dampers (stiffening ones, too), beside each other or to the ground, shaken by a force or by walls that
-move; stops against the ground, between bodies or in a moving cavity; dry friction on the ground or a belt. Every motion is integrated with
-scipy's DOP853 from event to event, events located by sampling and Brent's method, friction by Coulomb's inequality, impacts by Newton's law.
+A machine has one to three bodies on springs (some of them stiffening) and dampers between each other and to the ground. A force or moving walls
+excite it. It has stops against the ground, between bodies or in a moving cavity, and dry friction on the ground or a belt. The independent
+integration uses scipy's DOP853 from event to event; events are located by sampling and Brent's method, friction follows Coulomb's
+inequality, impacts Newton's law.
 
-What is compared: letters and times of the first events of simulations, and whether orbits of branches that are said to be real come
-back to where they began; stable ones after a small push as well.
+Two things are compared: letters and times of the first events of simulations, and whether orbits on real branches close.
 """
 
 from __future__ import annotations
@@ -27,20 +27,22 @@ from orbits.flows.protocol import SimulationError
 from orbits.symbols import cos
 
 EXACT = {"rtol": 1e-12, "atol": 1e-13}
-SAMPLES = 24  # of each step of the integrator at which events are looked for
+SAMPLES = 24  # samples of each integration step at which events are sought
+# AGREE: largest difference of times; PUSH: perturbation of a start that measures its growth;
+# SLOW: speed below which impacts accumulate if the wall is pressed by more than HARD
 AGREE, PUSH, SLOW, HARD = (
     1e-6,
     1e-9,
     1e-3,
     0.05,
-)  # of times, of starts; impacts slower than this pile up, where a wall is pressed so hard
-EVENTS, MOST = 24, 10**6  # of each motion that are compared, at most
-TRIES = 30  # starts from which a motion is looked for
+)
+EVENTS, MOST = 24, 10**6  # events of a motion that are compared; largest number of events of a run
+TRIES = 30  # random starts from which an attractor is sought
 
 
 @dataclass
 class Stop:
-    """A wall: of body `a` on the side `side`, against body `b`, or the ground, or a cavity that moves as `shake` cos(phase)."""
+    """A wall for body `a` on its side `side`: body `b`, the ground, or a cavity that moves as `shake` cos(phase)."""
 
     letter: str
     a: int
@@ -53,7 +55,7 @@ class Stop:
 
 @dataclass
 class Drawn:
-    """Numbers of a machine; lists have one entry per body, `chain` one per neighbouring pair."""
+    """Data of a machine; lists have one entry per body, `chain` has one (stiffness, damping) per neighbouring pair."""
 
     mass: list[float]
     ground: list[float]
@@ -68,11 +70,12 @@ class Drawn:
 
     @property
     def n(self) -> int:
+        """Number of bodies."""
         return len(self.mass)
 
 
 def draw(salt: int, seed: int) -> Drawn:
-    """The numbers of a seed."""
+    """Draw the machine of a seed."""
     rng = np.random.default_rng([salt, seed])
     n = int(rng.choice([1, 2, 2, 3]))
 
@@ -117,9 +120,9 @@ def draw(salt: int, seed: int) -> Drawn:
     return drawn
 
 
-# ---------------------------------------------------------------------- as a machine file says it
+# ---------------------------------------------------------------------- as a machine file
 def machine(d: Drawn) -> Machine:
-    """The machine as a user would declare it."""
+    """Declare the machine as in a machine file."""
     n = d.n
 
     def motion(state: Any, phase: Any, p: Any, contact: Any) -> Any:
@@ -163,9 +166,9 @@ def machine(d: Drawn) -> Machine:
     )
 
 
-# ---------------------------------------------------------------------- Newton's laws once more
+# ---------------------------------------------------------------------- independent integration
 class Witness:
-    """One motion, integrated from event to event."""
+    """One motion, integrated from event to event independently of the package."""
 
     def __init__(self, d: Drawn, forcing: float, frequency: float, phase: float, state: np.ndarray) -> None:
         self.d, self.forcing, self.frequency, self.phase = d, forcing, frequency, phase
@@ -177,10 +180,10 @@ class Witness:
             if d.limit[i] and self.slides[i] == 0:
                 self._settle(i)
         self.events: list[tuple[str, float]] = []
-        self.held: list[int] = []  # stops that press on their bodies
+        self.held: list[int] = []  # stops in lasting contact
 
     def force(self, i: int, t: float, y: np.ndarray) -> float:
-        """Of springs, dampers and the shaking, on one body."""
+        """Force of springs, dampers and the excitation on one body."""
         d, n = self.d, self.d.n
         x, v = y[:n], y[n:]
         f = self.forcing * d.forcing[i] * np.cos(self.phase + self.frequency * t)
@@ -194,6 +197,7 @@ class Witness:
         return float(f)
 
     def rates(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Return velocities and accelerations."""
         d, n = self.d, self.d.n
         out = np.empty(2 * n)
         out[:n] = y[n:]
@@ -212,7 +216,7 @@ class Witness:
         return out
 
     def push(self, k: int, t: float, y: np.ndarray) -> float:
-        """Of a stop on its bodies, relative to a mass: how fast its gap would close without it."""
+        """Acceleration with which the gap of a stop would close without its force; positive while the stop presses."""
         held, n, s = self.held, self.d.n, self.d.stops[k]
         self.held = [other for other in held if other != k]
         free = self.rates(t, y)[n:]
@@ -221,7 +225,7 @@ class Witness:
         return float(s.side * (free[s.a] - (wall if s.b is None else free[s.b])))
 
     def gap(self, s: Stop, t: float, y: np.ndarray) -> tuple[float, float]:
-        """A clearance and its rate."""
+        """Return the gap of a stop and its rate."""
         n, angle = self.d.n, self.phase + self.frequency * t
         if s.b is not None:
             other, rate = y[s.b], y[n + s.b]
@@ -230,12 +234,12 @@ class Witness:
         return s.clearance - s.side * (y[s.a] - other), -s.side * (y[n + s.a] - rate)
 
     def _settle(self, i: int) -> None:
-        """Stick, or the direction in which a body at rest begins to slide."""
+        """Let a body at rest stick, or begin to slide in the direction of the force."""
         f = self.force(i, self.time, self.y)
         self.slides[i] = 0 if abs(f) <= self.d.limit[i] else int(np.sign(f))
 
     def watched(self) -> list[tuple[str, Callable[[float, np.ndarray], float], tuple[str, int]]]:
-        """Functions whose fall through zero is an event."""
+        """Return (letter, function, (kind, index)) of all possible events; an event is a decrease of the function through zero."""
         d, n = self.d, self.d.n
         out: list[Any] = []
         for k, s in enumerate(d.stops):
@@ -255,11 +259,11 @@ class Witness:
         return out
 
     def carried(self) -> dict[int, int]:
-        """The stops of the ground that hold bodies, by body."""
+        """Return body -> stop, for stops against ground or cavity in lasting contact."""
         return {self.d.stops[k].a: k for k in self.held if self.d.stops[k].b is None}
 
     def run(self, until: float, most: int = MOST) -> bool:
-        """Integrate; False where impacts pile up, so that nothing can be compared any more."""
+        """Integrate until a time or a number of events; return False if the motion can no longer be compared (accumulating impacts)."""
         while self.time < until and len(self.events) < most:
             watched = self.watched()
             solver = DOP853(self.rates, self.time, self.y, until, max_step=0.2 / self.frequency, **EXACT)
@@ -271,7 +275,7 @@ class Witness:
                 for letter, function, what in watched:
                     values = [function(t, y) for t, y in zip(times, states)]
                     for a, b, fa, fb in zip(times, times[1:], values, values[1:]):
-                        # begins at zero and leaves it: no event
+                        # a function that begins at zero and leaves it is no event
                         if fb < 0.0 and (fa > 0.0 or (fa > -1e-9 and a > self.time)):
                             at = (
                                 a
@@ -286,7 +290,7 @@ class Witness:
                     for k, s in enumerate(self.d.stops)
                     if k not in self.held
                 ):
-                    return False  # an impact so soon after another one that no sample has met it
+                    return False  # two impacts between two samples
             if first is None:
                 self.time, self.y = until, solver.y
                 return True
@@ -296,7 +300,7 @@ class Witness:
         return True
 
     def _hold(self, k: int, rate: float) -> bool:
-        """Impacts pile up: from here on the wall holds, if it is pressed."""
+        """Begin lasting contact after accumulating impacts, if the stop is pressed; return False if this case is not compared."""
         d, n, y, s = self.d, self.d.n, self.y, self.d.stops[k]
         if self.push(k, self.time, y) < HARD or any(
             {s.a, s.b} & {d.stops[j].a, d.stops[j].b} - {None} for j in self.held
@@ -315,6 +319,7 @@ class Witness:
         return self.push(k, self.time, y) > 0.0
 
     def _let_go(self, k: int) -> None:
+        """End lasting contact."""
         s = self.d.stops[k]
         self.held.remove(k)
         self.events.append((f"{s.letter})", self.time))
@@ -325,7 +330,7 @@ class Witness:
                 self.events.append((f"s{s.a}", self.time))
 
     def _turned_by(self, k: int, i: int) -> bool:
-        """A wall that holds a body takes its velocity through that of the belt."""
+        """Let the velocity of a body in lasting contact pass that of its belt."""
         self.slides[i] = -self.slides[i]
         if self.push(k, self.time, self.y) >= 0.0:
             self.events.append((f"t{i}", self.time))
@@ -334,6 +339,7 @@ class Witness:
         return True
 
     def _happen(self, letter: str, what: str, k: int) -> bool:
+        """Apply an event to the state; return False if the motion can no longer be compared."""
         d, n, y = self.d, self.d.n, self.y
         if what == "hit":
             s = d.stops[k]
@@ -341,7 +347,7 @@ class Witness:
             if abs(rate) < SLOW:
                 return self._hold(k, rate)
             if any({s.a, s.b} & {d.stops[j].a, d.stops[j].b} - {None} for j in self.held):
-                return False  # a blow to a body that is held
+                return False  # impact on a body in lasting contact
             weight = 1.0 / d.mass[s.a] + (0.0 if s.b is None else 1.0 / d.mass[s.b])
             blow = -(1.0 + s.restitution) * rate / weight
             y[n + s.a] -= s.side * blow / d.mass[s.a]
@@ -358,16 +364,16 @@ class Witness:
             if any(k in (d.stops[j].a, d.stops[j].b) for j in self.held):
                 return False
             self._settle(k)
-            if self.slides[k] == came:  # pushed on: the velocity only touches zero
+            if self.slides[k] == came:  # the velocity only touches zero
                 return False
             letter = f"s{k}" if self.slides[k] == 0 else f"t{k}"
         elif what == "release":
             self._let_go(k)
             return True
         else:
-            self.slides[k] = int(np.sign(self.force(k, self.time, y)))  # the reserve is zero
+            self.slides[k] = int(np.sign(self.force(k, self.time, y)))  # the reserve of friction vanishes
         self.events.append((letter, self.time))
-        for i in range(n):  # a damper between two bodies hands on the jump of a velocity
+        for i in range(n):  # a damper transmits the velocity jump of a neighbouring body as a force
             if (
                 d.limit[i]
                 and self.slides[i] == 0
@@ -379,7 +385,7 @@ class Witness:
 
 
 def compared(d: Drawn, m: Machine, rng: np.random.Generator) -> str:
-    """The first events of one motion; a sentence where they differ."""
+    """Compare the first events of one motion; return a sentence if they differ, else an empty text."""
     n = d.n
     for _ in range(200):
         state = np.concatenate([rng.uniform(-0.3, 0.3, n), rng.uniform(-1.0, 1.0, n)])
@@ -406,14 +412,14 @@ def compared(d: Drawn, m: Machine, rng: np.random.Generator) -> str:
     allowed = AGREE
     for k, ((letter, time), (other, near)) in enumerate(zip(begin.events, pushed.events)):
         growth = abs(time - near) / PUSH
-        if letter[0] == "(":  # where bounces become too small to be followed is a matter of the program
+        if letter[0] == "(":  # programs end accumulating impacts at different sizes
             allowed = 300.0 * AGREE
             while k < len(mine) and mine[k][0] != letter and mine[k][1] < time + 100.0 * SLOW:
                 del mine[k]
             if k < len(mine) and mine[k][0] == letter and abs(mine[k][1] - time) < 100.0 * SLOW:
                 continue
         if letter != other or growth > 1e4:
-            return ""  # beyond this nothing is certain
+            return ""  # later events depend too strongly on rounding
         if k >= len(mine):
             return f"event {k}: {letter} at {time:.9f}; the simulator has stopped ({ours.ended})"
         if mine[k][0] != letter or abs(mine[k][1] - time) > allowed * (1.0 + growth * 1e-2):
@@ -422,10 +428,10 @@ def compared(d: Drawn, m: Machine, rng: np.random.Generator) -> str:
 
 
 def orbits_of(m: Machine, rng: np.random.Generator) -> list[Any]:
-    """Real orbits of the branches of a small diagram around a motion that simulation settles on."""
+    """Return real orbits from a small diagram that begins at an attractor."""
     attractor = None
     for _ in range(TRIES):
-        with suppress(SimulationError):  # bodies overlap there
+        with suppress(SimulationError):  # bodies overlap at this start
             attractor = m.attractor(m.random_start(m.vector(), rng))
             break
     if attractor is None or attractor.orbit is None or not len(attractor.orbit.word):
@@ -441,7 +447,7 @@ def orbits_of(m: Machine, rng: np.random.Generator) -> list[Any]:
 
 
 def returning(d: Drawn, orbit: Any) -> str:
-    """Whether Newton's laws lead an orbit back to where it began; a sentence if not."""
+    """Check by independent integration that an orbit closes; return a sentence if not, else an empty text."""
     nodes, lasts = np.asarray(orbit.nodes), orbit.durations
     growth = float(np.abs(orbit.multipliers).max(initial=0.0))
     if not lasts.min() > SLOW or not orbit.margin > SLOW or growth > 1e3:
@@ -450,7 +456,7 @@ def returning(d: Drawn, orbit: Any) -> str:
     at = dict(zip(orbit.model.parameter_names, orbit.params))
     motion = Witness(d, at["forcing"], d.frequency, float(nodes[first, 0]), nodes[first, 1:])
     for i, mode in zip([i for i in range(d.n) if d.limit[i]], orbit.word.modes[first][len(d.stops) :]):
-        motion.slides[i] = mode  # where it begins to slide its velocity is zero but for rounding
+        motion.slides[i] = mode  # the velocity may be zero to rounding, so its sign is taken from the word
     try:
         motion.run(0.5 * lasts[first] / d.frequency)
         before = motion.y.copy()
@@ -458,7 +464,7 @@ def returning(d: Drawn, orbit: Any) -> str:
     except ValueError as error:
         return f"{orbit.word.text} k={orbit.periods}: {error}"
     if not whole or any(letter[0] == "(" for letter, _ in motion.events):
-        return ""  # impacts that pile up, known to fewer digits
+        return ""  # accumulating impacts, which have a lower accuracy
     off = float(np.abs(motion.y - before).max())
     if off < AGREE * (1.0 + growth):
         return ""
@@ -467,7 +473,7 @@ def returning(d: Drawn, orbit: Any) -> str:
 
 
 def main() -> int:
-    """Search."""
+    """Compare all machines; return 1 if there are findings."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", type=int)
     parser.add_argument("--first", type=int, default=0)

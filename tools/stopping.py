@@ -1,10 +1,10 @@
-"""Commands that write, killed and interrupted at random moments, and two of them at once: a tool, not a test.
+"""Kill and interrupt commands at random times, and run two of them at once, to check that their files stay right.
 
 Usage: python -m tools.stopping KILLS INTERRUPTS PAIRS [SALT] [VERB ...]
 
-KILLS and INTERRUPTS are counted over all verbs, PAIRS for each. After each blow the same command is run again; the result must be that of
-an undisturbed run, and no other file may be left. Two commands on one file, the second one begun at a random moment, must both end well.
-Every line that is printed but the last one of a verb is a finding.
+KILLS and INTERRUPTS are numbers over all verbs, PAIRS is a number for each verb. After each kill or interrupt the same command runs again; its
+result must equal that of an undisturbed run, and no other file may remain. Two commands on one file, the second one started at a random
+time, must both succeed. Each printed line, except the last one of a verb, is a finding.
 """
 
 from __future__ import annotations
@@ -60,19 +60,22 @@ Word = str | Path
 
 
 def line(*words: Word) -> list[str]:
-    """A command line in a process of its own."""
+    """Return the command line of a separate process."""
     return [sys.executable, "-m", "contvines.command", *map(str, words)]
 
 
 def vines(folder: Path) -> Any:
+    """Read the graph or chart that a verb has written."""
     return load(folder / "x.vines", problems=False)
 
 
 def text(folder: Path) -> Any:
+    """Read the table that a verb has written."""
     return (folder / "x.csv").read_bytes()
 
 
 def survey(folder: Path) -> Any:
+    """Read the survey and its table."""
     from contvines.survey import load_survey
 
     found = load_survey(folder / "x.nc")
@@ -81,7 +84,7 @@ def survey(folder: Path) -> Any:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Equal bit for bit; charts to rounding, for a locus that goes on is bordered anew."""
+    """Whether two results are equal bit for bit; charts to rounding, because a resumed locus has new bordering vectors."""
     if isinstance(one, Graph):
         return same_graph(one, other)
     if hasattr(one, "loci"):
@@ -104,9 +107,14 @@ class Verb:
 
     Parameters
     ----------
-    words : the command line; the second one for the other command of a pair, if it is another one.
-    read : what is compared.
-    beside : name of a prepared file that is the verb's x.vines at the beginning.
+    words : list
+        Arguments of the command.
+    read : callable
+        Reads the result that is compared from a folder.
+    second : list, optional
+        Arguments of the second command of a pair; default: the same.
+    beside : str
+        Name of a prepared file that is copied to x.vines before the command runs.
     """
 
     def __init__(
@@ -119,7 +127,7 @@ class Verb:
         self.words, self.second, self.read, self.beside = words, second or words, read, beside
 
     def folder(self, prepared: Path, place: Path) -> Path:
-        """A fresh folder with what the verb needs."""
+        """Make an empty folder with the files that the verb needs."""
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir()
         for name in ("s.toml", "d.vines"):
@@ -143,7 +151,7 @@ VERBS = {
 
 
 def prepare(folder: Path) -> None:
-    """The study, and the diagrams that some verbs begin with."""
+    """Write the study, and the diagrams with which some verbs begin."""
     (folder / "s.toml").write_text(STUDY)
     (folder / "w.toml").write_text(WIDE)
     small = STUDY.replace('word = "LR"', 'word = "LRLRLR"\nperiods = 3').replace("0.55", "0.58")
@@ -161,7 +169,7 @@ def names(folder: Path) -> list[str]:
 
 
 def struck(name: str, prepared: Path, whole: Path, seconds: float, blow: int, chance: random.Random) -> str:
-    """One blow at a random moment, and the same command again; a sentence about what is wrong then."""
+    """Send the signal `blow` at a random time and run the same command again; return a sentence if the result is wrong."""
     verb = VERBS[name]
     folder = verb.folder(prepared, prepared / "struck")
     after = chance.uniform(0.0, 1.1 * seconds)
@@ -171,7 +179,7 @@ def struck(name: str, prepared: Path, whole: Path, seconds: float, blow: int, ch
     time.sleep(after)
     process.send_signal(blow)
     _, said = process.communicate(timeout=600)
-    ours = "contvines" in said  # Python itself may be hit before it has begun with a line of ours
+    ours = "contvines" in said  # False if Python was interrupted before it ran the package
     if blow == signal.SIGINT and process.returncode not in (0, 130, -signal.SIGINT) and ours:
         return f"after {after:.3f} s of {seconds:.3f} it ended with {process.returncode}: {said[-500:]}"
     again = run(verb.words, folder)
@@ -180,7 +188,7 @@ def struck(name: str, prepared: Path, whole: Path, seconds: float, blow: int, ch
 
 
 def paired(name: str, prepared: Path, wholes: list[Path], seconds: float, chance: random.Random) -> str:
-    """Two commands at once; a sentence about what is wrong then."""
+    """Run two commands at once; return a sentence if the result is wrong."""
     verb = VERBS[name]
     folder = verb.folder(prepared, prepared / "paired")
     after = chance.uniform(0.0, seconds)
@@ -202,7 +210,7 @@ def paired(name: str, prepared: Path, wholes: list[Path], seconds: float, chance
 
 
 def compared(verb: Verb, folder: Path, whole: Path, ended: list[subprocess.CompletedProcess[str]]) -> str:
-    """A sentence about what is not as in the undisturbed folder; empty if all is."""
+    """Compare with the undisturbed folder; return a sentence if exit status, files or result differ, else an empty text."""
     for done in ended:
         if done.returncode != 0:
             return f"exit status {done.returncode}: {done.stderr[-500:]}"
@@ -215,7 +223,7 @@ def compared(verb: Verb, folder: Path, whole: Path, ended: list[subprocess.Compl
 
 
 def main(kills: int, interrupts: int, pairs: int, salt: str, verbs: list[str]) -> int:
-    """Strike and pair; the number of findings."""
+    """Run all checks; return the number of findings."""
     chance, findings = random.Random(salt), 0
     with tempfile.TemporaryDirectory() as place:
         prepared = Path(place)
@@ -225,7 +233,7 @@ def main(kills: int, interrupts: int, pairs: int, salt: str, verbs: list[str]) -
             verb, wholes, seconds = VERBS[name], [], 0.0
             orders = [[verb.words, verb.second], [verb.second, verb.words]]
             single = verb.folder(prepared, prepared / f"{name}-alone")
-            run(verb.words, single)  # compiles
+            run(verb.words, single)  # first run, which compiles
             single = verb.folder(prepared, prepared / f"{name}-alone")
             begun = time.monotonic()
             assert run(verb.words, single).returncode == 0

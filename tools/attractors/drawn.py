@@ -1,4 +1,4 @@
-"""Machines drawn at random, and the atlases in which their attractors are looked for."""
+"""Random machines, and options of the atlases that must contain their attractors."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 
 from orbits import Absorber, Cavity, Coupled
 
-STARTS = {"absorber": 1000, "cavity": 1000, "declared": 1000, "coupled": 200}  # of the witness, at each value
-OPTIONS: dict[str, dict[str, int]] = {  # of the atlas of a machine drawn at random
+# starts of the independent simulation at each value
+STARTS = {"absorber": 1000, "cavity": 1000, "declared": 1000, "coupled": 200}
+OPTIONS: dict[str, dict[str, int]] = {  # options of the atlas
     "absorber": {"depth": 1},
     "cavity": {"depth": 1},
     "declared": {"depth": 0, "starts": 64, "values": 8, "scan": 16},
@@ -18,7 +19,7 @@ OPTIONS: dict[str, dict[str, int]] = {  # of the atlas of a machine drawn at ran
 
 
 def drawn(kind: str, i: int) -> tuple[Any, str, tuple[float, float]]:
-    """The i-th machine of a kind, its parameter and interval."""
+    """Return the i-th machine of a kind, the parameter that varies, and its interval."""
     g = np.random.default_rng(7000 + i)
     both = {"gravity": g.uniform(0.05, 0.5), "mass_ratio": 0.006, "frequency": g.uniform(0.7, 1.4)}
     if kind in ("absorber", "declared"):

@@ -1,4 +1,4 @@
-"""Cycles told by their impacts alone, which brute force and the package both know."""
+"""Compare cycles by their impacts, which both the package and the independent simulation compute."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 TWO_PI = 2.0 * np.pi
-SAME = 2e-6  # difference of phases and velocities of impacts
+SAME = 2e-6  # largest difference of phases and velocities of impacts of one cycle
 
 
 def impacts_of(orbit: Any) -> np.ndarray:
-    """Wall (1 left, -1 right), phase and B (velocity of the cavity less that of the mass in it) of every impact, shape (n, 3)."""
-    if orbit.model.flow == "page":  # the absorber as a page: its states are w and w'
+    """Return wall (1 left, -1 right), phase and B (velocity of the cavity minus that of the absorber) of every impact, shape (n, 3)."""
+    if orbit.model.flow == "page":  # the absorber as a declared machine with the states w and w'
         of = dict(zip(orbit.model.parameter_names, orbit.params, strict=True))
         letters = [orbit.word.letter(i).text for i in range(len(orbit.word))]
         rows = [
@@ -35,7 +35,7 @@ def impacts_of(orbit: Any) -> np.ndarray:
 
 
 def same(one: np.ndarray, other: np.ndarray, mirror: bool) -> bool:
-    """Whether two lists of impacts are one cycle, or mirror images."""
+    """Whether two lists of impacts belong to one cycle or, with `mirror`, to mirror images."""
     image = other * [-1.0, 1.0, -1.0] + [0.0, np.pi, 0.0]
     return _alike(one, other) or (mirror and _alike(one, image))
 
@@ -51,7 +51,7 @@ def _alike(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def kind_of(periods: int, impacts: np.ndarray, piles: bool, mirror: bool) -> tuple:
-    """What two cycles at different values must have in common to be of one kind."""
+    """Return the kind of a cycle: periods, whether impacts accumulate, and the cyclic order of walls. Cycles at different values may be of one kind."""
     walls = "" if piles else "".join("L" if x > 0 else "R" for x in impacts[:, 0])
     images = [walls, walls.translate(str.maketrans("LR", "RL"))] if mirror else [walls]
     return periods, piles, min(one[i:] + one[:i] for one in images for i in range(max(len(one), 1)))

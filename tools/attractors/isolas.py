@@ -1,4 +1,4 @@
-"""Twenty-five branches that hang together with no other one: `python -m tools.attractors.isolas` looks for all of them."""
+"""Twenty-five isolas (branches that are connected to no other one): `python -m tools.attractors.isolas` searches for all of them."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ SINGLE = partial(Absorber, restitution=0.76, gravity=0.211, mass_ratio=0.006)
 
 @dataclass(frozen=True)
 class Isola:
-    """A branch that is known to be there: a fold of it, or a value at which it attracts and what it is.
+    """An isola that is known independently, by its folds or by a value at which it is stable.
 
     Attributes
     ----------
     name : str
     atlas : callable
-        Makes the graph in which it must be.
+        Computes the graph that must contain it.
     folds : tuple of float
-        Where it turns round, from a closed form or a solve of its own.
+        Values of its folds, from a closed form or an independent solution.
     tolerance : float
-        Of the folds.
+        Largest error of the folds.
     attracts : (float, int, int) or None
         A value at which it is stable, its periods and its impacts.
     quick : bool
-        Whether it takes a second or so.
+        Whether the atlas takes about a second.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Isola:
     quick: bool = False
 
     def found(self, graph: cv.Graph) -> bool:
-        """Whether the graph has it."""
+        """Whether the graph contains the isola."""
         folds = np.array([point.value for point in graph.of_kind("fold")])
         if not all(np.abs(folds - fold).min(initial=np.inf) < self.tolerance for fold in self.folds):
             return False
@@ -62,7 +62,7 @@ class Isola:
 
 
 def pitchfork(tilt: float) -> Isola:
-    """x' = x + (p x - x^3 + tilt) / 5: the lower pair is born at p = 3 (tilt / 2)^(2/3), apart from the upper branch."""
+    """Map x -> x + (p x - x^3 + tilt) / 5: the lower pair has a fold at p = 3 (tilt / 2)^(2/3) and is not connected to the upper branch."""
 
     def step(x: Any, p: float) -> Any:
         return x + (p * x - x**3 + tilt) / 5.0
@@ -75,7 +75,7 @@ def pitchfork(tilt: float) -> Isola:
 
 
 def circle(radius: float) -> Isola:
-    """A pair that lives on p = 0.37 -+ radius alone: y^2 + ((p - 0.37) / radius)^2 = 1, y = (x - 1) / 0.3."""
+    """A closed branch between p = 0.37 -+ radius: y^2 + ((p - 0.37) / radius)^2 = 1, y = (x - 1) / 0.3."""
 
     def step(x: Any, p: float) -> Any:
         return x + 0.1 * (1.0 - ((p - 0.37) / radius) ** 2 - ((x - 1.0) / 0.3) ** 2)
@@ -90,7 +90,7 @@ def circle(radius: float) -> Isola:
 
 
 def window(period: int, near: float, point: float) -> Isola:
-    """A window of the logistic map: the cycle is born where f^n(x) = x and (f^n)'(x) = 1, solved here."""
+    """A window of the logistic map: the cycle has a fold where f^n(x) = x and (f^n)'(x) = 1, solved here by Newton's method."""
     x, p = point, near
     for _ in range(50):
         rest, matrix = _tangency(period, x, p)
@@ -105,7 +105,7 @@ def window(period: int, near: float, point: float) -> Isola:
 
 
 def _tangency(period: int, x: float, p: float) -> tuple[np.ndarray, np.ndarray]:
-    """f^n(x) - x and (f^n)'(x) - 1, and their derivatives by x and p, by second-order forward differentiation."""
+    """Return f^n(x) - x and (f^n)'(x) - 1, and their derivatives by x and p, computed by second-order forward differentiation."""
     y, yx, yp, yxx, yxp = x, 1.0, 0.0, 0.0, 0.0
     for _ in range(period):
         d, dd = p * (1 - 2 * y), -2 * p
@@ -122,7 +122,7 @@ def alone(
     attracts: tuple[float, int, int],
     quick: bool = False,
 ) -> Isola:
-    """A motion of the absorber that is on no diagram from `LR`; a simulation of its own says where it attracts."""
+    """A motion of the absorber that no diagram from `LR` contains; an independent simulation shows a value at which it is stable."""
 
     def atlas() -> cv.Graph:
         return cv.atlas(
@@ -133,7 +133,7 @@ def alone(
 
 
 def island() -> Isola:
-    """Asymmetric orbits of the coupled machine between 0.992992 and 0.998990, off its frequency response."""
+    """Asymmetric orbits of the coupled machine between 0.992992 and 0.998990, not connected to its frequency response."""
     coupled = Coupled(
         forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
     )
@@ -145,9 +145,9 @@ def island() -> Isola:
 
 
 def wide(half_width: int) -> Isola:
-    """The closed response of an absorber in a wide cavity, which hangs together with the sliding motion nowhere.
+    """The closed response of an absorber in a wide cavity, which is not connected to the sliding motion.
 
-    From 32.5 mm on (at 8.054 Hz) it attracts no more: a pair of its multipliers leaves the unit circle.
+    Above 32.5 mm (at 8.054 Hz) it is unstable: a pair of multipliers lies outside the unit circle.
     """
     coupled = physical(
         "coupled",
@@ -193,7 +193,7 @@ ISOLAS: list[Isola] = [
 
 
 def main() -> None:
-    """A line for each, or for the first so many: found or not, branches, seconds of the processor."""
+    """Print a line for each isola (or for the first N): found or missing, number of branches, processor time."""
     missing, wanted = 0, ISOLAS[: int(sys.argv[1])] if len(sys.argv) > 1 else ISOLAS
     for isola in wanted:
         begin = time.process_time()

@@ -1,13 +1,13 @@
-"""Is every attractor that brute force finds on the atlas? The brute force is `witness.c`, which shares nothing with the package.
+"""Check that atlases contain all attractors that brute-force simulation finds; the simulation (`witness.c`) shares no code with the package.
 
-``python -m tools.attractors.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
-``python -m tools.attractors.truth frequency 200``  the coupled machine, 40 frequencies, two forcings, so many starts at each (2000)
-``python -m tools.attractors.truth frequency 2000 3.3``  one forcing alone
-``python -m tools.attractors.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``, ``declared``)
-``python -m tools.attractors.truth absorber 5 10``  five of them, from the tenth on; the sum so far is told after each
+``python -m tools.attractors.truth paper``               friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
+``python -m tools.attractors.truth frequency 200``       the coupled machine, 40 frequencies, two forcings, 200 starts at each (default 2000)
+``python -m tools.attractors.truth frequency 2000 3.3``  only one forcing
+``python -m tools.attractors.truth absorber 20``         20 random machines (or ``cavity``, ``coupled``, ``declared``)
+``python -m tools.attractors.truth absorber 5 10``       five of them, from number 10 on; the sums are printed after each
 
-What the witness tells is kept in the directory that the environment variable ``CONTVINES_WITNESS`` names: a run that was stopped goes on there,
-and after a change of the package its time is not spent again.
+Results of the simulation are stored in the directory that the environment variable ``CONTVINES_WITNESS`` names, so that a stopped run resumes
+and a change of the package does not repeat the simulation.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ from orbits.machines.page.loading import load_page
 from tools.attractors.drawn import OPTIONS, STARTS, drawn
 from tools.attractors.impacts import impacts_of, kind_of, same
 
-SIGMAS = 3.0
-ENOUGH = 1000  # starts of our own for shares
-FEW_OF_A_PAGE = 100  # starts for shares: those of a page are followed one by one
+SIGMAS = 3.0  # largest difference of shares in standard deviations
+ENOUGH = 1000  # starts of the package for the comparison of shares
+FEW_OF_A_PAGE = 100  # the same for a declared machine, whose starts are simulated one by one
 SOURCE = Path(__file__).with_name("witness.c")
 PAGE = Path(__file__).resolve().parents[2] / "examples" / "machines" / "absorber.py"
-NAMED = {"chaotic", "quasi-periodic", "slow", "chatter"}  # what is told of motions that do not recur
-PILED = 1000  # events of a recurrence in which impacts pile up, as the witness counts them
-NEAR = 0.01  # of the interval: so near an attractor of the atlas must be named that does not recur
+NAMED = {"chaotic", "quasi-periodic", "slow", "chatter"}  # kinds of motions without a period
+PILED = 1000  # number of events by which the witness marks a cycle with accumulating impacts
+NEAR = 0.01  # largest distance of a non-periodic attractor of the atlas from the simulated value, relative to the interval
 
 
 @dataclass
 class Met:
-    """What the witness has met at one value: (periods, impacts, starts, impacts' wall, phase and B, whether they pile up)."""
+    """Result of the witness at one value; each attractor is (periods, impacts, starts, rows of wall, phase and B, whether impacts accumulate)."""
 
     value: float
     attractors: list[tuple[int, int, int, np.ndarray, bool]]
@@ -59,7 +59,7 @@ class Met:
 
 @dataclass
 class Tally:
-    """What of it is on an atlas, and how the starts' shares compare."""
+    """Numbers of attractors on an atlas and missing ones, and of shares of starts that differ."""
 
     met: int = 0
     missing: int = 0
@@ -84,14 +84,14 @@ class Tally:
 
 @cache
 def compiled() -> str:
-    """Path of the compiled witness."""
+    """Compile the witness; return its path."""
     target = Path(tempfile.mkdtemp()) / "witness"
     subprocess.run(["gcc", "-O3", "-o", str(target), str(SOURCE), "-lm"], check=True)
     return str(target)
 
 
 def _told(program: str, arguments: Sequence[str], lines: str) -> str:
-    """What the witness prints; kept in the directory `CONTVINES_WITNESS`, if there is one, until the witness or its input changes."""
+    """Return the output of the witness; it is stored in the directory `CONTVINES_WITNESS`, if given, until the witness or its input changes."""
     kept = os.environ.get("CONTVINES_WITNESS")
     key = hashlib.sha256("\n".join((SOURCE.read_text(), *arguments, lines)).encode()).hexdigest()
     file = Path(kept, key[:32]) if kept else None
@@ -114,7 +114,7 @@ def witness(
     transient: float = 200.0,
     tries: int = 5,
 ) -> list[Met]:
-    """Starts drawn at random from the box of the machine's own, simulated until they recur."""
+    """Simulate random starts from the machine's box with the witness, until they recur."""
     first = f"{int(isinstance(machine, Coupled))} {starts} {seed}"
     box, program = machine.population(over).box, compiled()
     text = "".join(
@@ -140,7 +140,7 @@ def witness(
 
 
 def _numbers(machine: Any, over: str, p: float, box: np.ndarray) -> list[float]:
-    """A line for the witness; the formulas are those of the machine's documentation."""
+    """Return the input of the witness at one value, by the formulas of the machine's documentation."""
     of = {
         n: float(x)
         for n, x in zip(machine.parameter_names, machine.vector_at(over, p, {over: p}), strict=True)
@@ -161,9 +161,9 @@ def _numbers(machine: Any, over: str, p: float, box: np.ndarray) -> list[float]:
 
 
 def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any = print) -> Tally:
-    """Look for everything that was met on a stable real branch of a graph.
+    """Search a graph for all attractors of the witness on stable real branches.
 
-    Those of one kind, wherever they were met, have as many periods and the same walls in a row; a kind is lost if one of them is.
+    Attractors at different values with the same periods and the same order of walls are one kind; a kind counts as lost if one of them is missing.
     """
     tally, engines = Tally(), {}
     kinds: dict[tuple, bool] = {}
@@ -182,7 +182,7 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
         for periods, hits, number, row, piles in here.attractors:
             share = number / total
             on = (
-                "chatter" in named  # infinitely many impacts have no word
+                "chatter" in named  # a motion with infinitely many impacts has no word
                 if piles
                 else any(same(row, one, mirror) for one in known)
                 if hits
@@ -207,7 +207,7 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
 def shares(
     population: Any, met: Sequence[Met], starts: int, mirror: bool, say: Any = print, drawing: Any = None
 ) -> Tally:
-    """Compare the package's shares with the witness's; `drawing` is the population whose box of starts the witness has, if it is another."""
+    """Compare the shares of starts of the package with those of the witness; `drawing` is the population with the witness's box of starts, if different."""
     tally = Tally()
     for here in met:
         drawn_starts = (drawing or population).starts(starts, 99, here.value)
@@ -233,7 +233,7 @@ def shares(
                     and not set(m.word) & set("LR")
                 )
             one, other = number / total, ours / starts
-            least = 1.0 / min(total, starts)  # of a few starts none may be there, or all
+            least = 1.0 / min(total, starts)  # lower bound, because a small sample may have the share 0 or 1
             both = float(np.clip((number + ours) / (total + starts), least, 1.0 - least))
             error = math.sqrt(both * (1.0 - both) * (1.0 / total + 1.0 / starts))
             beyond = abs(one - other) > SIGMAS * max(error, 1e-12)
@@ -246,7 +246,7 @@ def shares(
 
 
 def listed_twice(graph: cv.Graph) -> list[str]:
-    """Attractors that stand more often at one value than their branch has stable solutions there."""
+    """Return attractors that are listed more often at one value than their branch has stable solutions there."""
     seen: dict[tuple, int] = {}
     for a in graph.attractors:
         if a.branch is not None:
@@ -260,13 +260,13 @@ def listed_twice(graph: cv.Graph) -> list[str]:
 
 
 def _stable_on(branch: Any, p: float) -> int:
-    """Stable solutions of a branch at a value: it may pass there more than once."""
+    """Number of stable solutions of a branch at a value."""
     engine, solved = solutions_at(branch, p)
     return sum(bool((np.abs(engine.multipliers(one.row)) < 1.0).all()) for one in solved)
 
 
 def _impacts_on(branch: Any, p: float, within: tuple[float, float], engines: dict) -> Iterator[np.ndarray]:
-    """Impacts of all orbits of a branch at a value."""
+    """Yield the impacts of each orbit of a branch at a value."""
     engine = engines.setdefault(branch.label, Engine(branch.problem, within, Settings()))
     gaps = branch.values - p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
@@ -285,7 +285,7 @@ def studied(
     page: bool = False,
     **options: Any,
 ) -> Tally:
-    """An atlas beside the witness, of the machine or of the same one declared in a machine file; a line of what they have in common."""
+    """Compare the atlas of a machine (with `page`: of the same machine in a machine file) with the witness, and print the result."""
     begin = time.process_time()
     population = machine.population(over)
     if page:
@@ -311,7 +311,7 @@ def studied(
 
 
 def main() -> None:
-    """One of the runs in this module's docstring."""
+    """Run one of the comparisons in the module's docstring."""
     what = sys.argv[1] if len(sys.argv) > 1 else "paper"
     tally = Tally()
     if what == "paper":
