@@ -1,1 +1,1 @@
-"""The command line and the TOML studies it reads: the one place where `contvines` and `orbits` meet."""
+"""The command line and the TOML studies that it reads; the only part of `contvines` that imports `orbits`."""

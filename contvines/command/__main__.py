@@ -1,4 +1,4 @@
-"""`python -m contvines.command` does what `contvines` does."""
+"""Run the command line by ``python -m contvines.command``."""
 
 from contvines.command.entry import main
 

@@ -1,4 +1,4 @@
-"""`contvines help`, `new`, `doctor` and `schema`: what there is, a commented study to begin with, whether all is installed and computes, and the JSON Schema of studies."""
+"""`contvines help`, `new`, `doctor` and `schema`: help, a commented study to begin with, a check of the installation, the JSON Schema of studies."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TASKS = {
     "How safe is a motion": ("basins", "robustness", "prove"),
     "Design a device": ("design", "recommend", "survey", "transient", "random", "calibrate"),
 }
-"""Task -> commands, in the order in which they are wanted."""
+"""Commands by task, in the order in which a user needs them."""
 
 TOPICS = ("labels", "words", "cite")
 
@@ -55,8 +55,8 @@ EXTRAS = {
     "surveys": ("dask", "distributed"),
     "report": ("plotly",),
 }
-"""Modules that each extra of pyproject.toml brings."""
-DIALECT = "http://json-schema.org/draft-07/schema#"  # what the TOML plugins of editors read
+"""Modules that each extra of pyproject.toml installs."""
+DIALECT = "http://json-schema.org/draft-07/schema#"  # version of JSON Schema that TOML plugins of editors understand
 
 
 def help(
@@ -142,7 +142,7 @@ def _labels() -> str:
 
 
 class Kind(StrEnum):
-    """What `new` writes."""
+    """Kinds of studies that `new` writes."""
 
     absorber = "absorber"
     coupled = "coupled"
@@ -153,7 +153,7 @@ class Kind(StrEnum):
 
 
 BESIDE = {Kind.machine: "machine.py", Kind.flow: "flow.py"}
-"""Python files that a study names and that are written beside it."""
+"""Python file that is written beside a study of a kind, and that the study names."""
 
 
 def new(
@@ -225,7 +225,7 @@ def doctor(json: JsonOption = False) -> None:
 
 
 def self_test() -> dict[str, Any]:
-    """The fold of the absorber's symmetric motion, found by continuation and in closed form.
+    """Compare the fold of the absorber's symmetric motion, found by continuation, with its closed form.
 
     Returns
     -------
@@ -281,13 +281,13 @@ def schema(
 
 
 def study_schema() -> dict[str, Any]:
-    """The JSON Schema of every study: a machine by its name, the same in physical units, or a Python file's machine or flow.
+    """Return the JSON Schema of all kinds of studies: built-in machines, the same in physical units, machines and flows of Python files.
 
     Returns
     -------
     dict
-        Of draft 7. Fields, types, limits and defaults are those of the pydantic models; what needs two fields at once (a start outside
-        its interval) is left to the commands.
+        JSON Schema of draft 7. Fields, types, limits and defaults are those of the pydantic models. Conditions on two fields at once (a
+        start outside its interval) are checked by the commands only.
     """
     from orbits.machines.names import NAMES
 
@@ -314,7 +314,7 @@ def _titled(made: dict[str, Any], title: str) -> dict[str, Any]:
 
 
 def _with_conditions(made: dict[str, Any]) -> dict[str, Any]:
-    """A study whose parameters may be tables over a condition."""
+    """Extend the schema of a study by parameters that are tables over a condition."""
     row = {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
     table = {
         "type": "object",
@@ -340,7 +340,7 @@ def _with_conditions(made: dict[str, Any]) -> dict[str, Any]:
 
 
 def _physical(name: str) -> dict[str, Any] | None:
-    """A machine in kilograms and hertz; quantities with a unit are text. None for one that has no quantities."""
+    """Return the schema of a machine in physical units, whose quantities are texts with a unit; None for a machine without quantities."""
     from pydantic import Field
 
     from orbits.machines.names import model_class
@@ -377,7 +377,7 @@ def _physical(name: str) -> dict[str, Any] | None:
 
 
 def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
-    """What a Python file declares, distinguished from the others by the name of its file; its parameters are known when that has run."""
+    """Restrict a schema to studies of a Python file, by the form of the model's name; the parameters are known only after the file has run."""
     from orbits.machines.names import PAGES, STRUCTURE
 
     about = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join([STRUCTURE, *PAGES])}'
@@ -388,7 +388,7 @@ def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
 
 
 def inlined(model: type[BaseModel]) -> dict[str, Any]:
-    """The schema of a pydantic model without references, and without the null that TOML does not have."""
+    """Return the schema of a pydantic model with references resolved, and without null, which TOML lacks."""
     made = model.model_json_schema(by_alias=True)
     shared = made.pop("$defs", {})
 
@@ -411,14 +411,14 @@ def inlined(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _said_already(key: str, value: object) -> bool:
-    """Whether an entry says nothing to an editor: titles made from names, defaults that are none or whole sections."""
+    """Whether an entry is useless in an editor: titles made from names, defaults that are None or whole sections."""
     return (key == "title" and isinstance(value, str)) or (
         key == "default" and (value is None or isinstance(value, dict))
     )
 
 
 def _with_units(value: Any) -> Any:
-    """Lists of numbers become lists of numbers or of text with a unit."""
+    """Allow texts with a unit in all lists of numbers of a schema, except in guesses."""
     if isinstance(value, list):
         return [_with_units(entry) for entry in value]
     if not isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""`contvines survey STUDY.toml --best "lowest worst-case peak" --over half_width`: a survey, its best, and the optimum near it."""
+"""`contvines survey STUDY.toml --best "lowest worst-case peak" --over half_width`: the best point of a survey, refined to an optimum near it."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from ..survey import Survey
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
-FILLING = ("worst-case", "worst", "robust", "%", "quantile", "of")  # words that say nothing more
+FILLING = ("worst-case", "worst", "robust", "%", "quantile", "of")  # words without further meaning
 NUMBER = re.compile(r"\d+(\.\d+)?")
-PEAKS = ("peak", "lower_peak")  # outcomes that the oscillator alone, and a tuned absorber, have too
-ALONE = ("bare", "tuned")  # what is told beside them
+PEAKS = ("peak", "lower_peak")  # outcomes that are compared with those of other machines
+ALONE = ("bare", "tuned")  # these machines: the bare oscillator and a tuned absorber
 BESIDE = {
     "peak": ("peak_at",),
     "lower_peak": ("lower_peak_at",),
@@ -42,12 +42,12 @@ BESIDE = {
     "dissipation": ("impact_power", "friction_power"),
     "pumping": ("pumping_time", "pumped_share"),
 }
-"""Outcome -> the columns that it has beside, or instead of, its own."""
+"""Further columns of an outcome, besides or instead of the column with its name."""
 FORM = 'for example "lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak"'
 
 
 class Wish(NamedTuple):
-    """Whether the largest is wanted, which quantile over the samples (None: the worst), and of which outcome."""
+    """The goal of ``--best``: largest or lowest, the quantile over the samples (None: the worst sample), the outcome."""
 
     largest: bool
     quantile: float | None
@@ -55,17 +55,17 @@ class Wish(NamedTuple):
 
     @property
     def over(self) -> str:
-        """What counts of the samples, in words."""
+        """The reduction over the samples, in words."""
         return "at worst" if self.quantile is None else f"{100.0 * self.quantile:g} %"
 
 
 def read_wish(text: str) -> Wish:
-    """What ``--best`` says.
+    """Parse the text of ``--best``.
 
     Raises
     ------
     ValueError
-        If the text cannot be read.
+        If the text cannot be parsed.
     """
     words = text.replace("%", " % ").split()
     if len(words) < 2 or words[0] not in LOW + HIGH:
@@ -85,11 +85,12 @@ def read_wish(text: str) -> Wish:
 
 
 def check_over(study: Study, over: list[str]) -> None:
-    """Refuse parameters to choose that are not those on a grid, or too many.
+    """Check that the parameters to choose are those on the grid of the survey, one or two.
 
     Raises
     ------
     ValueError
+        If they are not.
     """
     axes = list(plan_and_machine(study)[0].axes)
     if over and sorted(over) != sorted(axes):
@@ -102,7 +103,7 @@ def check_over(study: Study, over: list[str]) -> None:
 
 
 def asking(study: Study, outcome: str) -> Study:
-    """The study, with the outcome among those that its survey has."""
+    """Return the study with an outcome added to those of its survey, unless it is among them."""
     said = study.survey.outcomes
     if outcome.partition(":")[0] in ("stable", "first", "share") or outcome in said:
         return study
@@ -113,22 +114,22 @@ def asking(study: Study, outcome: str) -> Study:
 
 
 def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
-    """The best point of a survey, refined.
+    """Find the optimum near the best point of a survey.
 
     Parameters
     ----------
     study : Study
     text : str
-        What ``--best`` says.
+        Of ``--best``.
     least : float
-        Share of the interval in which the response must be known.
+        Smallest share of the interval in which the response must be known.
     found : Survey
-        That of the study.
+        The survey of the study.
 
     Raises
     ------
     ValueError
-        If the outcome is not known of any machine.
+        If the outcome is known for no machine.
     """
     from orbits.design import best
 
@@ -170,7 +171,7 @@ def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
 def tell_choice(
     study: Study, text: str, covered: float | None, found: Survey, json_: bool, quiet: bool, plot: Path | None
 ) -> None:
-    """Print and draw the choice beside its other outcomes; `covered` as for `choose`, by default as in the survey."""
+    """Print and draw the choice with its other outcomes; `covered` is `least` of `choose`, by default that of surveys."""
     from ..survey.outcomes import KNOWN
     from .plot import compared_text, peaks_compared
 
@@ -196,7 +197,7 @@ def tell_choice(
 
 
 def _in_part(found: Survey, wish: Wish) -> str:
-    """What would be chosen if the machines that are known best counted as known; empty where nothing is known."""
+    """Describe the choice if the median of the known shares were accepted (option ``--covered``); empty if nothing is known."""
     share = found["covered"].min(axis=-1) if found.plan.samples else found["covered"]
     if not np.isfinite(share).any():
         return ""
@@ -210,7 +211,7 @@ def _in_part(found: Survey, wish: Wish) -> str:
 
 
 def _picture(found: Survey, choice: Choice, wish: Wish) -> Figure:
-    """The survey with the choice marked in it, and what was tried on the way to it."""
+    """Return the survey's picture with the choice, and the points tried in the search, marked."""
     figure, names = found.plot(wish.outcome), list(found.plan.axes)
     axes, red = figure.axes[0], "#b5121b"
     places = [(*(values[name] for name in names), outcome)[:2] for values, outcome in choice.tried]
@@ -224,7 +225,7 @@ def _picture(found: Survey, choice: Choice, wish: Wish) -> Figure:
 
 
 def _choice_text(choice: Choice, wish: Wish, found: Survey, units: dict[str, str], least: float) -> str:
-    """The choice, and what it costs: the other outcomes beside the best that each could be on the grid."""
+    """Describe the choice: its values, its outcome, and its other outcomes with their ranges over the survey."""
 
     def shown(name: str, value: float) -> str:
         return f"{figures(value)} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"

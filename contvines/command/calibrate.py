@@ -1,4 +1,4 @@
-"""`contvines calibrate STUDY.toml`: restitution, friction and other parameters from measured impact times or a measured sweep."""
+"""`contvines calibrate STUDY.toml`: estimate restitution, friction and other parameters from measured impact times or a measured sweep."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ if TYPE_CHECKING:
     from orbits.design.calibration import Calibration
     from orbits.machines.base import Model
 
-INEXACT = 0.01  # of the time between impacts: clocks are better, so that data that scatter more are told to be doubtful
-CLOSE = 0.95  # correlation of two estimates from which on it is told
+# scatter of the data, relative to the time between impacts, from which on a warning is printed: clocks are more exact
+INEXACT = 0.01
+CLOSE = 0.95  # correlation of two estimates from which on it is printed
 
 
 def calibrate(
@@ -115,7 +116,7 @@ def calibrate(
 
 
 def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
-    """A calibration as one JSON object."""
+    """Return a calibration as one JSON object."""
     return {
         "values": found.values,
         "intervals": {name: list(ends) for name, ends in found.intervals.items()},
@@ -128,7 +129,7 @@ def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
 
 
 def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -> str:
-    """The estimates, what the data cannot tell apart, and lines for the study."""
+    """Describe the estimates, correlated parameters, and the lines to write in the study."""
     rows = [
         (name, *map(figures, (value, *found.intervals[name], guesses[name])), units.get(name, ""))
         for name, value in found.values.items()
@@ -159,7 +160,7 @@ def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[st
 
 
 def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
-    """The machine given by the unknown parameters, and their values in the study."""
+    """Return the machine as varied by the unknown parameters, and the values of these in the study."""
     from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
@@ -194,7 +195,7 @@ def _limits(said: list[str], names: list[str], model: Model) -> dict[str, tuple[
 
 
 def _limit(text: str, name: str, said: str, model: Model) -> float:
-    """One end of an interval in which an estimate may lie, in the machine's unit."""
+    """Return one end of the interval in which an estimate may lie, in the machine's unit."""
     try:
         value = amount("", said, name, model.units)
         if isinstance(model, Physical) and model.units.get(name):

@@ -1,4 +1,4 @@
-"""A study of a built-in machine in its own numbers."""
+"""Studies of built-in machines in their own (dimensionless) numbers."""
 
 from pathlib import Path
 from typing import Any
@@ -28,11 +28,12 @@ from .study_data import (
 
 
 def read_catalogue(data: dict[str, Any], path: Path) -> Study:
-    """A study whose `[model]` names a machine of the catalogue.
+    """Check a study whose `[model]` names a machine of the catalogue.
 
     Raises
     ------
     StudyError
+        If a value is invalid.
     """
     model = data.get("model")
     name = model.get("name") if isinstance(model, dict) else None
@@ -73,7 +74,7 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
 
 
 def _without_machine(data: dict[str, Any], model: object, name: object) -> list[str]:
-    """What is wrong with a study of which nobody knows whose it is."""
+    """Return all errors of a study whose model is unknown that can be found without it."""
     known = (*NAMES, *PAGES, STRUCTURE)
     names = f'{", ".join(map(repr, known))}, or a machine of your own, "FILE.py:NAME"'
     if name is not None:
@@ -90,7 +91,7 @@ def _without_machine(data: dict[str, Any], model: object, name: object) -> list[
 
 
 def wrong_guess(guess: list[list[float]] | None, machine: Model | type[Model]) -> list[str]:
-    """Nodes of a guess with the wrong count of numbers."""
+    """Return errors about the nodes of a guess with a wrong count of numbers."""
     names = machine.node_names
     return [
         f"[start] guess[{i}] = {node!r} has {len(node)} numbers; each event needs [{', '.join(names)}]."
@@ -100,11 +101,12 @@ def wrong_guess(guess: list[list[float]] | None, machine: Model | type[Model]) -
 
 
 def built(study: Study) -> Study:
-    """The study, if its values go together and its word can be.
+    """Return the study after checking that its machine can be made and its word is possible.
 
     Raises
     ------
     StudyError
+        If not.
     """
     try:
         vector = study.model.vector(study.loose)

@@ -1,4 +1,4 @@
-"""`contvines locus`, `chart` and `circle`: one or all special points of a diagram followed in a second parameter, and the invariant circles beside one."""
+"""`contvines locus`, `chart` and `circle`: follow one or all special points in a second parameter, and the invariant circles of one."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def chart(
 
 
 def _tell(found: Chart, target: Path, plot: Path | None, quiet: bool, details: bool = False) -> None:
-    """Say where a chart is kept, print it, draw it."""
+    """Print where a chart is stored and the chart itself, and draw it."""
     say(f"kept in {target}", quiet)
     if not quiet:
         tell_result(found, target, details)
@@ -136,14 +136,14 @@ def _tell(found: Chart, target: Path, plot: Path | None, quiet: bool, details: b
 
 
 class Plane(NamedTuple):
-    """What a diagram is charted over: the second parameter, its interval, and whether virtual motions are followed."""
+    """Settings of a chart: the second parameter, its interval, and whether virtual motions are followed."""
 
     over: str
     within: tuple[float, float]
     virtual: bool
 
     def fingerprint(self, graph: Graph) -> str:
-        """What tells charts of a diagram apart."""
+        """Return the digest that identifies the chart of a diagram with these settings."""
         values = [(point.label, point.kind, point.value) for point in graph.special.values()]
         model = {
             name: value for name, value in graph.model.items() if name != "page"
@@ -154,7 +154,7 @@ class Plane(NamedTuple):
 
 
 def chart_of(graph: Graph, plane: Plane, target: Path, quiet: bool, source: dict[str, Any] | None) -> Chart:
-    """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
+    """Return the chart of a diagram, from its file if that is finished, otherwise computed; `source` is stored for `contvines rerun`."""
     from ..loci.chart import Chart
     from ..loci.charting import chart as make
 
@@ -172,7 +172,7 @@ def chart_of(graph: Graph, plane: Plane, target: Path, quiet: bool, source: dict
 def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, virtual: bool, trust: bool, fresh: bool
 ) -> tuple[Graph, Path, Plane]:
-    """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
+    """Return the diagram to chart (computed first if a study is given), its file, and the settings of the chart."""
     from ..shared.files import is_database
     from .run import diagram
     from .study import read_study
@@ -202,7 +202,7 @@ def _diagram(
 
 
 def _source(diagram: Path, target: Path, plane: Plane) -> dict[str, Any] | None:
-    """The study of a diagram, as its file keeps it, and what is charted; None where it keeps none."""
+    """Return the study stored in a diagram's file, with the settings of the chart; None if the file has no study."""
     from .study import source_of
 
     kept = source_of(diagram)

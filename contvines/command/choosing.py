@@ -1,4 +1,4 @@
-"""The machines among which `contvines recommend` chooses: their diagrams and simulations, and what is told of the chosen one."""
+"""The machines among which `contvines recommend` chooses: their diagrams and simulations, and the data about the chosen one."""
 
 from __future__ import annotations
 
@@ -32,25 +32,28 @@ if TYPE_CHECKING:
     from ..survey.completion import Unbranched
     from ..survey.outcomes import Findings
 
-PLACES = 13  # values of the first look
-ENOUGH = 5  # values on the grid of a study, from which on these are looked at in place of them
-CLEARANCES = ("clearance", "gap", "width", "distance")  # in names of what is usually chosen
-SAMPLES = 16  # where the study does not say
+PLACES = 13  # number of values in the first round
+ENOUGH = 5  # number of values on a study's grid from which on the first round uses these instead
+# parts of the names of parameters that are usually chosen
+CLEARANCES = ("clearance", "gap", "width", "distance")
+SAMPLES = 16  # default number of samples
 REPLAYED, LONGEST = (
     400,
     24,
 )  # forcing periods: of a motion simulated from itself, of the longest that may recur
-CHECK = 61  # values of the simulation up and down
-SWEPT = 25  # values at which a machine whose flights are integrated is simulated in place of a diagram
-SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
-ABOUT, FINE = 8, 321  # steps to either side of the largest response where it looks closer, at so many values
-ROUGH = 33  # the same where flights are integrated
-DRAWN = 4000  # instants of the start-up that are kept
+CHECK = 61  # number of values of the simulations up and down
+SWEPT = 25  # number of simulated values, instead of a diagram, for a machine whose flights are integrated
+# default range of the values, relative to the largest clearance of the theory
+SPREAD = (0.1, 1.25)
+# the simulation is refined this many steps to either side of the largest response, with this number of values
+ABOUT, FINE = 8, 321
+ROUGH = 33  # number of these values if flights are integrated
+DRAWN = 4000  # number of stored instants of the start-up
 MODULATED = ("chaotic", "quasi-periodic", "slow")
 
 
 def loads(found: Findings) -> dict[str, float]:
-    """The largest of each load over the stable motions; the speed of impacts over simulated ones, too."""
+    """Return the largest value of each load over the stable branches and the motions without a branch."""
     known = {name: [float(met.measures.get(name, math.nan)) for met in found.unbranched] for name in LOADS}
     for part in stretches(found.graph):
         for name in LOADS:
@@ -60,8 +63,7 @@ def loads(found: Findings) -> dict[str, float]:
 
 
 def met(found: Findings) -> dict[str, float]:
-    """Shares of the simulated motions by what they are (with impacts and a period, modulated or chaotic, without impacts, stuck), and the
-    largest response of each, that of the branches included."""
+    """Return the share of each kind in `MET` among the simulated motions, and the largest response of each kind, branches included."""
     from ..graph.stretches import default_measure
 
     name = default_measure(found.graph)
@@ -78,7 +80,7 @@ def met(found: Findings) -> dict[str, float]:
 
 
 def _kind(measures: Mapping[str, float], text: str) -> str:
-    """What a simulated motion is, one of `MET`."""
+    """Return the kind of a simulated motion, a key of `MET`."""
     if text == "stuck":
         return "stuck"
     if text in MODULATED or modulation_of(measures):
@@ -87,32 +89,33 @@ def _kind(measures: Mapping[str, float], text: str) -> str:
 
 
 def largest(values: Sequence[float] | np.ndarray) -> float:
-    """The largest number; no number where there is none."""
+    """Return the largest finite number; nan if there is none."""
     values = np.asarray(values, dtype=float)
     return float(values[np.isfinite(values)].max(initial=-np.inf)) if np.isfinite(values).any() else math.nan
 
 
 def tidy(value: float) -> float:
-    """A value of four digits: nobody builds more."""
+    """Round a value to four digits, more than anybody manufactures."""
     return float(f"{value:.4g}")
 
 
 @dataclass
 class Machines:
-    """The machines of a study of which one is chosen, and what is asked of them.
+    """The machines of a study among which one is chosen, with the computations on them.
 
     Attributes
     ----------
     study : Study
     cost : float
-        The share by which the worst response may be higher within the tolerance.
+        Relative increase of the worst response that is allowed within the tolerance.
     workers : int, optional
-        Processes.
+        Number of processes.
     journal : callable
-        Round -> file of its rows.
+        Returns the file for the rows of a round.
     tell : callable
-        Takes sentences.
+        Called with messages about the progress.
     progress : bool
+        Whether to show the progress of each round.
     """
 
     study: Study
@@ -168,16 +171,16 @@ class Machines:
                 f"responses elsewhere than at the choice are those of simulations up and down at {SWEPT} values and from drawn starts: "
                 "a motion to which few starts lead is not among them"
             )
-        self.pace: float | None = None  # seconds a machine
+        self.pace: float | None = None  # seconds per machine
         self.surveys = 0
 
     @property
     def known(self) -> Mapping[str, float]:
-        """The study's own numbers."""
+        """The parameter values of the study."""
         return getattr(self.model, "quantities", None) or self.study.parameters
 
     def range(self) -> list[float]:
-        """The values of the first look, the study's own among them where it lies in the range."""
+        """Return the values of the first round, with the study's own value if it lies in the range."""
         own = self.known.get(self.name)
         if self.plan.axes:
             given = self.plan.axes[self.name]
@@ -200,13 +203,13 @@ class Machines:
         return sorted({*map(tidy, values), *([] if own is None else [float(own)])})
 
     def surveyed(self, plan: Plan, outcomes: Sequence[Any], **ways: Any) -> Survey:
-        """The rows of a plan, kept in the journal of the round."""
+        """Compute the survey of a plan; its rows are stored in the journal of the round."""
         from ..survey.survey import survey
         from .survey import without_main
 
         self.surveys += 1
         begun = monotonic()
-        options = {**self.study.options, "depth": 0}  # what leaves a branch is met by simulation, too
+        options = {**self.study.options, "depth": 0}  # simulation also finds the motions that leave a branch
         with without_main():
             found = survey(
                 self.family, plan, over=self.study.parameter, within=self.study.within, outcomes=outcomes, workers=self.workers,
@@ -218,7 +221,7 @@ class Machines:
 
     # ------------------------------------------------------------------ told of the choice
     def described(self) -> dict[str, str]:
-        """The study's numbers as text, with what is uncertain."""
+        """Return the study's parameters as text, with the distributions of uncertain ones."""
         units = self.model.units
         found = {
             name: f"{figures(value)} {units.get(name, '')}".rstrip() for name, value in self.known.items()
@@ -234,8 +237,11 @@ class Machines:
     def checked(
         self, value: float, model: Varying, own: dict[str, float]
     ) -> tuple[tuple[float, float] | None, list[Curve]]:
-        """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
-        is next to the largest); of simulations up and down, if these meet more. The responses."""
+        """Return the largest response of the study's machine at the choice by its diagram and by simulation, and the response curves.
+
+        The simulation starts on the motion with the largest response, at a value next to that of the maximum; simulations up and down
+        count if they find a larger response.
+        """
         from orbits.attractors.search import beginning_with
         from orbits.attractors.sweeping import sweep
 
@@ -288,7 +294,7 @@ class Machines:
         return compared[0], seen
 
     def compared(self, model: Varying) -> list[Curve]:
-        """Responses of the machines to compare with; declared machines have none."""
+        """Return the responses of the machines to compare with; declared machines have none."""
         from orbits.machines.base import Model
 
         from .plot import POINTS, response_of
@@ -300,7 +306,7 @@ class Machines:
         return [Curve(kind, values.tolist(), response_of(kind, model, params).tolist()) for kind in KINDS]
 
     def start_up(self, model: Varying, at: float) -> Start:
-        """The start-up from rest at a value of the parameter."""
+        """Return the start-up from rest at a value of the parameter."""
         from orbits.design.transients import start_up
 
         from .measured import Scales
@@ -332,7 +338,7 @@ class Machines:
 
 
 def _what(study: Study, names: Sequence[str]) -> str:
-    """What to write where nothing is to be chosen: a range without ``count`` only says that a value is uncertain."""
+    """Return advice for a study without a parameter to choose: a range without ``count`` means that a value is uncertain."""
     said = {
         name: value["within"]
         for name, value in study.survey.vary.items()

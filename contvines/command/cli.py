@@ -1,7 +1,7 @@
-"""The command `contvines`: its sub-commands, and how errors reach a user (as sentences).
+"""The command `contvines`: its sub-commands, and the conversion of errors to messages.
 
-Each sub-command is a function in a file of this folder, imported when it is called, and has a line in `COMMANDS`. Importing this module must stay cheap:
-numpy, matplotlib, rich and pydantic are imported by the commands that need them.
+Each sub-command is a function in a file of this folder, which is imported when the sub-command is called, and has a line in `COMMANDS`.
+The import of this module must stay fast: numpy, matplotlib, rich and pydantic are imported by the commands that need them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typer.main import get_command
 
 from .options import option
 
-LONGEST = 200  # letters of a word in a sentence (paths aside)
+LONGEST = 200  # largest number of letters of a word in an error message, paths excepted
 QUOTES = "'\""
 
 COMMANDS = {
@@ -94,11 +94,11 @@ COMMANDS = {
         "Print the JSON Schema of studies, for editors that complete and check TOML.",
     ),
 }
-"""Name of the sub-command, and of its function: the file of this folder, and the first sentence of what it says of itself."""
+"""Sub-commands by name, which is also that of the function: file in this folder, and first sentence of the function's docstring."""
 
 
 class Command(TyperCommand):
-    """A command that takes no option's name for the value of the option before it."""
+    """A command that does not accept an option's name as the value of the option before it."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         options = {
@@ -122,7 +122,7 @@ class Command(TyperCommand):
 
 
 def command(name: str) -> TyperCommand:
-    """The sub-command of a name, with all its options."""
+    """Import and return the sub-command with a name."""
     own = typer.Typer(add_completion=False, rich_markup_mode=None)
     own.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
     found = get_command(own)
@@ -131,10 +131,10 @@ def command(name: str) -> TyperCommand:
 
 
 class Listed(TyperCommand):
-    """A sub-command of which nothing is known but its name and its sentence until it is called."""
+    """A sub-command that is imported when it is called; until then only its name and its first sentence are known."""
 
     def get_short_help_str(self, limit: int = 0) -> str:
-        """The whole sentence, which goes on in further lines of the list."""
+        """Return the whole sentence, which the list wraps."""
         return str(self.help)
 
     def make_context(self, info_name: str | None, args: list[str], parent: Any = None, **extra: Any) -> Any:
@@ -146,7 +146,7 @@ app = typer.Typer(
     help="Continuation and bifurcation analysis of motions with impacts and friction, of maps and of flows.",
     no_args_is_help=True,
     add_completion=False,
-    rich_markup_mode=None,  # help texts are printed as they are written: in markup what stands in brackets is lost
+    rich_markup_mode=None,  # help texts are printed unchanged; markup would remove texts in brackets
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -180,7 +180,7 @@ for name, (_, its_sentence) in COMMANDS.items():
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line; every error ends as a sentence on stderr and a non-zero exit status."""
+    """Run the command line; every error becomes a message on stderr and a non-zero exit status."""
     gc.set_threshold(300_000, 20, 100)  # imports and compiled code make many objects that stay
     atexit.register(gc.freeze)  # else Python looks through them all before it ends: a fifth of a short run
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -213,7 +213,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def stopped(note: str = "") -> None:
-    """End after Ctrl-C: say what is kept and how to go on, exit status 130."""
+    """End the program after Ctrl-C with exit status 130; `note` says what is stored and how to continue."""
     print(
         f"\ncontvines: stopped; {note or 'nothing new is kept; run the same command again'}.", file=sys.stderr
     )
@@ -221,7 +221,7 @@ def stopped(note: str = "") -> None:
 
 
 def sentence(error: Exception) -> str:
-    """An error for people: our own errors are sentences already, others are named."""
+    """Return an error's message for users; errors of unexpected types are named."""
     if isinstance(error, KeyError) and error.args and " " in str(error.args[0]):
         text = str(error.args[0])
     elif isinstance(error, ValueError) and str(error):

@@ -1,4 +1,4 @@
-"""Where the two packages meet: a study becomes a machine, a first orbit and a run, with the measures that its motions have."""
+"""From a study to computations: its machine, population, first orbit, diagram or atlas, and the names of its measures."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .study_data import Sort, Study, without_word
 if TYPE_CHECKING:
     from ..graph import Graph
 
-WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with axes
+WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with an option -y
 
 
 def machine(study: Study):
-    """The machine of a study, `[start]`'s overrides included.
+    """Return the machine of a study, with the parameter values that `[start]` overrides.
 
     Raises
     ------
     ValueError
-        If it is a study of a flow, which is no machine.
+        If it is a study of a flow.
     """
     if study.sort is Sort.FLOW:
         raise ValueError(
@@ -38,17 +38,18 @@ def machine(study: Study):
 
 
 def check_shaken(study: Study, vary: Iterable[str] = ()) -> None:
-    """Refuse a study in which nothing shakes the machine, whatever varies.
+    """Check that something shakes a study's machine, or that a parameter which varies does.
 
     Parameters
     ----------
     study : Study
     vary : iterable of str
-        What varies beside the study's parameter.
+        Parameters that vary besides the study's own one.
 
     Raises
     ------
     ValueError
+        If it is not.
     """
     if study.sort not in (Sort.CATALOGUE, Sort.PHYSICAL):
         return
@@ -61,7 +62,7 @@ def check_shaken(study: Study, vary: Iterable[str] = ()) -> None:
 
 
 def population(study: Study):
-    """Starts of a study's machine or flow, and what they settle on, over its parameter."""
+    """Return the population of a study's machine or flow over the study's parameter."""
     own = study.parameters if study.sort is Sort.FLOW else study.loose
     fixed = {name: value for name, value in own.items() if name != study.parameter}
     if study.sort is Sort.FLOW:
@@ -72,12 +73,12 @@ def population(study: Study):
 
 
 def first_orbit(study: Study):
-    """The study's start, solved.
+    """Find the first orbit of a study.
 
     Raises
     ------
     ValueError
-        If the word cannot be, or no orbit with it is found; the sentence names the study.
+        If the word is impossible, or no orbit with it is found; the message names the study.
     """
     reduction = getattr(study.model, "reduction", None)
     if reduction is not None and reduction.error:
@@ -105,8 +106,9 @@ def first_orbit(study: Study):
 
 
 def _page_start(study: Study):
-    """What the study's state leads to, elsewhere in its interval if nothing recurs here; of a self-excited machine that comes to rest, or with
-    the word "", the equilibrium near it.
+    """Return the first orbit of a declared machine: the motion on which its state settles, if necessary elsewhere in the interval.
+
+    For a self-excited machine that comes to rest, or with the word "", it is the equilibrium near the state.
     """
     from contextlib import suppress
 
@@ -127,7 +129,7 @@ def _page_start(study: Study):
 
 
 def _settled(study: Study):
-    """The motion that settles from rest, where the study begins or elsewhere in its interval; told on stderr."""
+    """Return the motion that settles from rest, where the study begins or elsewhere in its interval, and report it on stderr."""
     from orbits.design import Family
 
     from ..graph.table import short_word
@@ -147,24 +149,24 @@ def _settled(study: Study):
 
 
 def run_diagram(study: Study, seed: object, **options: Any) -> Graph:
-    """The automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
+    """Compute the automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
     asked = {"bounds": study.bounds, "kinds": study.all_kinds, **study.options}
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 
 def run_atlas(study: Study, seed: object, **options: Any) -> Graph:
-    """The atlas of a study's starts; options as for `contvines.atlas`."""
+    """Compute the atlas of a study; options as for `contvines.atlas`."""
     asked = {"kinds": study.all_kinds, **study.options, **study.atlas.model_dump()}
     return contvines.atlas(seed, within=study.within, **{**asked, **options})
 
 
 def check_bounds(study: Study, command: str) -> None:
-    """Refuse bounds on measures that the study's machine does not have, and intervals that are none.
+    """Check a study's bounds: known measures, and non-empty intervals.
 
     Raises
     ------
     ValueError
-        With a sentence that names the measure and the known ones.
+        If a bound is invalid; the message names the measure and the known ones.
     """
     if not study.bounds:
         return
@@ -186,18 +188,20 @@ def check_bounds(study: Study, command: str) -> None:
 
 
 def check_axes(study: Study, axes: dict[str, str | None], plot: Path | None) -> None:
-    """Refuse measures that the study's machine does not have, and axes without a picture.
+    """Check the options for the axes of a picture: known measures, and a picture to draw.
 
     Parameters
     ----------
     study : Study
-    axes : option -> name of a measure, or None where it is not given.
-    plot : where the picture goes, or None.
+    axes : dict
+        Name of a measure, or None, by option.
+    plot : Path or None
+        Of the picture.
 
     Raises
     ------
     ValueError
-        With a sentence that names the option, the measure and those there are.
+        If an axis is invalid; the message names the option, the measure and the known ones.
     """
     for option, name in axes.items():
         if name is None:
@@ -214,7 +218,7 @@ def check_axes(study: Study, axes: dict[str, str | None], plot: Path | None) -> 
 
 
 def measures_of(study: Study) -> list[str]:
-    """Names of all measures of a study's motions."""
+    """Return the names of all measures of a study's motions."""
     if study.sort is Sort.FLOW:
         return ["norm", "period", *study.flow.of_states]
     model = machine(study)
@@ -222,7 +226,7 @@ def measures_of(study: Study) -> list[str]:
 
 
 def help_note(words: list[str]) -> str:
-    """What the help adds for the file that stands on the line: the default of -y, or nothing."""
+    """Return the addition to a command's help for the file on the command line: the default of -y, or an empty text."""
     command = next((word for word in words if not word.startswith("-")), "")
     files = [Path(word) for word in words if word.endswith((".toml", ".vines")) and Path(word).is_file()]
     if command not in WITH_Y or not files:
@@ -230,12 +234,12 @@ def help_note(words: list[str]) -> str:
     try:
         name = _default(files[0])
     except (ValueError, OSError):
-        return ""  # the command itself says what is wrong with the file
+        return ""  # the command itself will report what is wrong with the file
     return f"For {files[0]} the default of -y is {name}.\n" if name else ""
 
 
 def _default(path: Path) -> str:
-    """The measure that is drawn of a study or graph if none is named."""
+    """Return the default measure of the pictures of a study or graph."""
     if path.suffix == ".vines":
         from ..graph import Graph
         from ..graph.stretches import default_measure

@@ -1,5 +1,4 @@
-"""`contvines design STUDY.toml`: design figures of the study's machine in physical units, as a table and
-a picture."""
+"""`contvines design STUDY.toml`: design figures of the study's machine in physical units, as a table and a picture."""
 
 from __future__ import annotations
 
@@ -26,18 +25,18 @@ if TYPE_CHECKING:
 
     from orbits.arguments import Reals
 
-DAMPING = 0.9  # the reduced model has none; the coupled model's default
-HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale
-LEVELS = 10  # contours of a map, about
-DECADES = 8.0  # how many times the largest number is the smallest where contours go by decades
-MM = 1000.0  # of a metre
+DAMPING = 0.9  # assumed for the reduced model, which has none; the default of the coupled model
+HALF_WIDTH = 0.02  # metres: assumed half-width of a dimensionless machine without a scale
+LEVELS = 10  # approximate number of contours of a map
+DECADES = 8.0  # ratio of the largest to the smallest number from which on contours are logarithmic
+MM = 1000.0  # millimetres per metre
 BLUE, RED = "#0b3c6f", "#b5121b"
 
 
 def machine(
     study: Study, cavity: float | None, natural_frequency: float | None
 ) -> tuple[Design, dict[str, str]]:
-    """The study's machine on a physical scale, and what is assumed beyond the study, a sentence by name of the quantity.
+    """Return the study's machine on a physical scale, and the assumptions beyond the study, a sentence by name of the quantity.
 
     ``gravity`` = g/(b omega_0^2) ties the cavity's half-width b to the natural frequency: one of the two
     is enough (`HALF_WIDTH` if none is given). Without gravity both are needed.
@@ -107,7 +106,7 @@ def machine(
 
 
 def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, str, str, str]]:
-    """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres; `assumed` are names of what the study does not say."""
+    """Return the rows of the table: name, symbol, value, unit, meaning; lengths in millimetres. `assumed`: names of assumed quantities."""
     half, damped = "half_width" in assumed, "damping" in assumed
     given = [
         ("half-width of cavity", "b", MM * design.cavity, "mm", f"{'assumed; ' if half else ''}wall to wall is 2 b"),
@@ -124,7 +123,7 @@ def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, 
 
 
 def as_json(design: Design, assumed: Mapping[str, str]) -> dict[str, Any]:
-    """Figures in SI units at full precision, and the assumptions."""
+    """Return the figures in SI units at full precision, and the assumptions."""
     found: dict[str, Any] = {
         "assumed": assumed,
         "cavity": {"value": float(design.cavity), "unit": "m"},
@@ -136,15 +135,15 @@ def as_json(design: Design, assumed: Mapping[str, str]) -> dict[str, Any]:
 
 
 def draw(design: Design, size: tuple[float, float] | None = None, assumed: Collection[str] = ()) -> Figure:
-    """Amplitude bounds and operating ratio over friction and over the cavity's half-width; a map of both.
+    """Draw amplitude bounds and operating ratio over friction and over the cavity's half-width, and a map over both.
 
     Parameters
     ----------
     design : Design
     size : (float, float), optional
-        Inches; a small figure has the bounds over friction alone.
-    assumed : names of what the study does not say
-        An assumed half-width is named above the figure.
+        Inches; a small figure has only the bounds over friction.
+    assumed : collection of str
+        Names of assumed quantities; an assumed half-width is mentioned above the figure.
     """
     from ..shared.figures import new_figure, settle, styled, thin_ticks
 
@@ -187,7 +186,7 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
 
 
 class Over(NamedTuple):
-    """A quantity that varies: values, its field of `Design`, the design's own value, a label, and how many of the label's unit are one."""
+    """A quantity that varies: its values, its field of `Design`, the design's own value, an axis label, and the factor to the label's unit."""
 
     values: np.ndarray
     name: str
@@ -197,7 +196,10 @@ class Over(NamedTuple):
 
 
 def _bounds(axes: Axes, design: Design, over: Over, room: float) -> None:
-    """Between which amplitudes of the oscillator two symmetric impacts are, and where the absorber sticks; `room` for a legend."""
+    """Draw the amplitudes of the oscillator between which two symmetric impacts exist, and those at which the absorber sticks.
+
+    `room` is the space for a legend.
+    """
     across, line = over.values * over.unit, design.with_(**{over.name: over.values})
     limits = line.activation_threshold, line.upper_bound, line.sticking_limit()
     low, high, stick = (MM * np.broadcast_to(limit, across.shape) for limit in limits)
@@ -217,7 +219,7 @@ def _mark_own(axes: Axes, over: Over) -> None:
 
 
 def _round_levels(low: float, high: float) -> Sequence[float]:
-    """Round values from below the lowest number to above the highest: in even steps, by decades (1, 2, 5) where they differ much."""
+    """Return round values that cover an interval: in even steps, or by decades (1, 2, 5) if the ends differ much."""
     from matplotlib.ticker import LogLocator, MaxNLocator
 
     if high > DECADES * low > 0.0:
@@ -228,9 +230,9 @@ def _round_levels(low: float, high: float) -> Sequence[float]:
 def _map(
     panel: Axes, mu: np.ndarray, b: np.ndarray, values: Reals, here: tuple[float, float], title: str
 ) -> None:
-    """A quantity over friction and half-width, as contours."""
+    """Draw the contours of a quantity over friction and half-width."""
     values = np.asarray(values)
-    known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
+    known = values[np.isfinite(values)]  # elastic walls without friction have no threshold and no ratio
     if known.size and known.max() > 1.001 * known.min():
         levels = _round_levels(float(known.min()), float(known.max()))
         shown = np.ma.masked_invalid(values)

@@ -1,11 +1,11 @@
-"""The console script: the command line, with Ctrl-C in good order from the first moment."""
+"""The console script: it runs the command line, and handles Ctrl-C and warnings from the first moment on."""
 
 import sys
 import warnings
 
 
 def main() -> None:
-    """Run `contvines`; an interrupt ends as a sentence with exit status 130."""
+    """Run `contvines`; an interrupt becomes a message and exit status 130."""
     sys.unraisablehook = _unraisable
     warnings.showwarning = _one_line
     try:
@@ -20,20 +20,20 @@ def main() -> None:
 def _one_line(
     message: Warning | str, category: type[Warning], filename: str, lineno: int, *where: object
 ) -> None:
-    """A warning as a sentence on stderr; of a library's with its place."""
+    """Print a warning as one line on stderr; warnings of libraries with their place in the code."""
     place = "" if category is UserWarning else f"{filename}:{lineno}: {category.__name__}: "
     print(f"contvines: {place}{message}", file=sys.stderr)
 
 
 def _unraisable(problem: "sys.UnraisableHookArgs") -> None:
-    """A Ctrl-C that fell into a callback, where Python can only ignore it, is given again a little later.
+    """Repeat a Ctrl-C that arrived in a callback, where Python can only ignore it.
 
-    Not at once: that would fall into this function, and be ignored again.
+    It is repeated a little later: at once, it would arrive in this function and be ignored again.
     """
     if problem.exc_type is not None and issubclass(problem.exc_type, KeyboardInterrupt):
         import _thread
 
-        _thread.start_new_thread(_again, ())  # does not wait for the thread, as `threading` would
+        _thread.start_new_thread(_again, ())  # `threading` would wait for the thread to start
     else:
         sys.__unraisablehook__(problem)
 

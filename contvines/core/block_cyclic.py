@@ -51,7 +51,7 @@ def eliminate(
     d : int
         Number of states at a node.
     closure : float
-        1, or -1 for a half period of a symmetric orbit.
+        1 for periodic solutions, -1 for antiperiodic ones.
     """
     count, size, _ = blocks.shape
     k, s = foot.shape[0], foot.shape[1] - foot.shape[0]
