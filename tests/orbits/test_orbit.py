@@ -46,10 +46,15 @@ def test_determinant_with_turns():
     assert np.prod(orbit.multipliers).real == pytest.approx(wanted, rel=1e-10)
 
 
+@pytest.mark.parametrize("amplitude", [0.55, 0.8])
 @pytest.mark.parametrize("times", [2, 16, 256])
-def test_long_words_lose_nothing(times):
-    orbit = ABSORBER.symmetric_orbit(0.55)
+def test_long_words_lose_nothing(times, amplitude):
+    """Of a stable orbit and of one that is not, found again from nodes beside its own."""
+    orbit = ABSORBER.symmetric_orbit(amplitude)
     long = orbit.repeat(times)
+    beside = long.nodes + 1e-6 * np.random.default_rng(1).standard_normal(long.nodes.shape)
+    again = ABSORBER.orbit(long.word, times, beside, amplitude=amplitude)
+    np.testing.assert_allclose(again.nodes, long.nodes, atol=1e-9)
     assert long.residual < 1e-12
     # powers in logarithms: the numbers themselves underflow
     np.testing.assert_allclose(

@@ -41,29 +41,6 @@ def symmetry(apply, engine):
     return SymmetryTest(found, engine.n, engine.shift)
 
 
-def test_numbers_known_by_hand():
-    engine = Shown(2, 2, 2)
-    # what it changes is twice the second unknown
-    mirror = symmetry(lambda u: u * [1.0, -1.0] + [TURN, 0.0], engine)
-    points, values = np.array([[0.0, 0.5], [3.0, -3.5], [3.0, -3.5]]), np.array([0.0, 2.0, 4.0])
-    rows = np.array(
-        [
-            [np.e, 0.0, -(np.e**-2), 0.0, 3.0, 1.0],
-            [0.0, 1.0, 0.0, -1.0, np.nan, -2.0],
-            [np.e, 0.0, np.e**3, 0.0, 1.0, -1.0],
-        ]
-    )
-    found = with_arrays(engine, [mirror], chunk(points, values, rows))
-    np.testing.assert_allclose(found.lengths, [np.sqrt(0.5 * 25.0 + 0.25 * 4.0), 1.0], rtol=1e-15)
-    np.testing.assert_allclose(found.smallest, [1.0, -2.0, -1.0])
-    np.testing.assert_allclose(found.spectra.near, [1.0, np.nan, 1.0], rtol=1e-14)
-    np.testing.assert_allclose(found.spectra.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
-    np.testing.assert_allclose(found.reached, [0, 0])
-    np.testing.assert_allclose(found.low, [0, 1])  # the second one changes its sign
-    np.testing.assert_allclose(found.sizes, [[1.0, 7.0, 7.0]])
-    np.testing.assert_allclose(found.turns, [[-7.0, 49.0]])
-
-
 NUMBERS = st.one_of(
     st.sampled_from([0.0, -0.0, 1.0, -1.0, np.inf, -np.inf, np.nan, 1e-300, -2e-12, 1e300]),
     st.floats(-8.0, 8.0, width=32),

@@ -1,8 +1,5 @@
 """The commands that compute, one after the other on one study, as a user would."""
 
-import csv
-import math
-
 import pytest
 
 from contvines.command.cli import main
@@ -127,21 +124,6 @@ def test_a_graph_that_was_cut_says_so(run):
 def test_a_guess_that_leads_nowhere_is_not_dropped_silently(run):
     status, _, said = run("diagram far.toml --quiet")
     assert not status and "the guess does not lead to an orbit 'LR'" in said and "found by simulation" in said
-
-
-def test_export_has_the_measures_of_every_point(run):
-    run.ok("export s.vines --to csv")
-    with open("s.csv", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["branch"] == "B1"]
-    assert {(row["word"], row["periods"]) for row in rows} == {("LR", "1")}
-    names = ("amplitude", "C2", "B_post", "u1", "B", "friction_loss")
-    for amplitude, square, after, u1, B, loss in ([float(row[name]) for name in names] for row in rows):
-        assert square == pytest.approx(amplitude**2, rel=1e-14)
-        assert after == pytest.approx(u1, abs=1e-15)  # the first event is an impact on the left wall
-        # LR on the impacting manifold C^2 = (1 - pi B/2)^2 + (R B + h)^2, friction included in h
-        R, h = 0.24 / 1.76, math.pi / 2 * 1.006 * 0.5 * 0.211
-        assert square == pytest.approx((1 - math.pi * B / 2) ** 2 + (R * B + h) ** 2, rel=1e-9)
-        assert loss == pytest.approx(0.5 * 0.211 * 4, rel=1e-14)
 
 
 @pytest.mark.parametrize("line", ["diagram s.toml --no-look", "atlas a.toml -o large.vines"])

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.flows.orbit import CycleOrbit
 from tests.contvines.flows.shooting import unit_circle
 
 pytestmark = pytest.mark.slow
@@ -54,25 +53,6 @@ def test_a_hopf_point_within_a_part_of_the_first_step_behind_a_branch_point():
     flow = cv.FlowProblem(f, [0.0, 0.0, 0.0], {"a": -0.2})
     graph = cv.diagram(flow, over="a", within=(-0.3, 0.4), depth=1)
     assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([1e-7], abs=1e-11)
-
-
-def test_a_branch_whose_mesh_has_no_equal_halves_ends_where_its_cycles_become_shorter_ones():
-    """As those of a neuron do, which are born at a Hopf point. Doubled cycles of Lur'e's feedback begin at alpha = 0.63030200616 (shooting, docs/demos_cycles.md)."""
-    flow = cv.FlowProblem(
-        lambda x, p: [x[1], x[2], -p.alpha * x[2] - x[1] - x[0] + x[0] ** 2],
-        [0.0, 0.0, 0.0],
-        {"alpha": 1.1},
-    )
-    whole = cv.diagram(flow, over="alpha", within=(0.55, 1.2), depth=2)
-    doubled, born = whole.branches["B3"], whole["PD1"]
-    assert born.criticality == "supercritical" and whole["PD2"].branch == "B3"
-    assert doubled.measure("period")[0] == pytest.approx(2.0 * born.orbit.period, rel=1e-6)
-    u, p = doubled.points[-1], float(doubled.values[-1])
-    problem = doubled.problem.with_unknowns(u, p, doubled.problem.intervals, 1)
-    graph = cv.diagram(CycleOrbit(problem, u, p), over="alpha", within=(0.55, 1.2), depth=0)
-    end = max(graph.of_kind("period-doubling"), key=lambda point: point.value)
-    assert end.value == pytest.approx(0.63030200616, abs=1e-9)
-    assert graph["B1"].range[1] == end.value
 
 
 def test_cycles_that_turn_over_keep_no_phase_that_does_not_suit_them():

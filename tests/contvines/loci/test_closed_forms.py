@@ -92,11 +92,6 @@ def turned(y, size, angle):
     return polar(*polar(*y, (size, 0.0)), circle(angle))
 
 
-def two_pairs(y, a, b):
-    one, other = square(*y[:2]), square(*y[2:])
-    return [*turned(y[:2], 1 + a - one + 0.3 * other, 0.8), *turned(y[2:], 1 + b + 0.2 * one - other, 2.3)]
-
-
 def flip_and_pair(y, a, b):
     return [-(1 + a) * y[0] + y[0] ** 3, *turned(y[1:], 1 + b + 0.2 * y[0] ** 2 - square(*y[1:]), 1.9)]
 
@@ -110,7 +105,6 @@ def fold_and_pair(y, a, b):
 @pytest.mark.parametrize(
     ("kind", "g", "start", "label"),
     [
-        ("double-neimark-sacker", two_pairs, [0.0] * 4, "NS"),
         ("flip-neimark-sacker", flip_and_pair, [0.0] * 3, "NS"),
         ("flip-neimark-sacker", flip_and_pair, [0.0] * 3, "PD"),
         # y0^2 = -a = 0.9 at p = -0.2, q = 0.3

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 import contvines as cv
 from contvines.loci.adaptive import AdaptiveLocus
 from contvines.problems.abilities import Adaptive
+from tests.contvines.flows.shooting import nerve, unit_circle
 from tests.contvines.loci.systems import BAZYKIN_DOUBLE_ZERO, bautin, bazykin
 
 pytestmark = pytest.mark.slow
@@ -36,11 +37,6 @@ def cycle(flow, states):
     return flow.cycle(t, np.column_stack([part + 0.0 * t for part in states(t)]))
 
 
-def nerve(x, p):
-    """FitzHugh-Nagumo."""
-    return [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])]
-
-
 def canard(e, low, high):
     """Current at which the slow manifolds meet above the fold x = -1, by simulation forwards and backwards."""
 
@@ -50,7 +46,7 @@ def canard(e, low, high):
     passes.terminal = True
 
     def height(current, start, sign):
-        begin, p = [start, start - start**3 / 3 + current], SimpleNamespace(I=current, e=e)
+        begin, p = [start, start - start**3 / 3 + current], SimpleNamespace(current=current, e=e)
         found = solve_ivp(
             lambda t, x: sign * np.array(nerve(x, p)),
             (0, 1e4),
@@ -67,8 +63,8 @@ def canard(e, low, high):
 
 def test_folds_of_cycles_go_on_through_a_canard_explosion():
     """Where the equations are singular to rounding along the whole explosion. By symmetry, (x, y, I) to -(x, y, I), both folds have the sum 7/4 of currents."""
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})
-    graph = cv.diagram(flow, over="I", within=(0.0, 2.0), depth=1, settings={"max_branches": 2})
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"current": 0.0, "e": 0.08})
+    graph = cv.diagram(flow, over="current", within=(0.0, 2.0), depth=1, settings={"max_branches": 2})
     left, right = (cv.locus(graph[label], over="e", within=(0.02, 0.5)) for label in ("LP1", "LP2"))
     assert isinstance(left.problem, Adaptive)  # the mesh and the phase follow the cycles
     for locus in (left, right):
@@ -83,10 +79,10 @@ def test_folds_of_cycles_go_on_through_a_canard_explosion():
 
 def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
     """At x = -1/2: with f the cubic and b = 0.8 the first Lyapunov coefficient is zero where the third derivative is -b / (1 - e b^2) times the second one's square."""
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.70, "e": 0.9374})
-    graph = cv.diagram(flow, over="I", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"current": 0.70, "e": 0.9374})
+    graph = cv.diagram(flow, over="current", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
     locus = cv.locus(graph["LP1"], over="e", within=(0.9373, 0.938))
-    assert locus.ended[1] == "the motion becomes an equilibrium, at I = 0.7083333333, e = 0.9375"
+    assert locus.ended[1] == "the motion becomes an equilibrium, at current = 0.7083333333, e = 0.9375"
     (point,) = locus.points.values()
     assert point.kind == "generalized-hopf"
     assert point.value == pytest.approx((17 / 24, 15 / 16), abs=1e-11)
@@ -94,8 +90,8 @@ def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
 
 def test_a_hopf_point_met_by_cycles_is_followed_as_that_of_the_equilibrium():
     """1 - v^2 = 0.8 e at rest with w = (v + 0.7) / 0.8 and I = w - v + v^3 / 3."""
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})
-    graph = cv.diagram(flow.attractor(I=0.8), over="I", within=(0.0, 1.0), depth=0)
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"current": 0.0, "e": 0.08})
+    graph = cv.diagram(flow.attractor(current=0.8), over="current", within=(0.0, 1.0), depth=0)
     locus = cv.locus(graph["HB1"], over="e", within=(0.04, 0.12))
     v = -np.sqrt(1.0 - 0.8 * locus.values[:, 1])
     assert locus.values[:, 0] == pytest.approx((v + 0.7) / 0.8 - v + v**3 / 3.0, abs=1e-9)
@@ -227,8 +223,7 @@ def fold_and_flip(x, p):
 )
 def test_two_things_at_once_beside_a_ring(f, label, kind, p11):
     flow = cv.FlowProblem(f, [1.0, 0, 0, 0, 0, 0], {"a": -0.3, "b": 0.12}, scale=1.0)
-    orbit = cycle(flow, lambda t: [np.cos(t), np.sin(t), 0.0, 0.0, 0.0, 0.0])
-    graph = cv.diagram(orbit, over="a", within=(-0.5, 0.05), depth=0)
+    graph = cv.diagram(flow.cycle(*unit_circle(6)), over="a", within=(-0.5, 0.05), depth=0)
     locus = cv.locus(graph[label], over="b", within=(-0.2, 0.2))
     (point,) = (point for point in locus.points.values() if point.kind == kind)
     assert np.abs(point.value).max() < min(point.error, 1e-9)
@@ -259,8 +254,7 @@ def test_period_doublings_go_on_where_the_mesh_becomes_too_coarse():
         return [*spiral(x, 1.0, turn), *twisted(x, x[2:], p.b - p.q**2, -0.4, turn)]
 
     flow = cv.FlowProblem(rates, [1.0, 0, 0, 0], {"b": -0.1, "q": 0.0}, scale=1.0)
-    orbit = cycle(flow, lambda t: [np.cos(t), np.sin(t), 0.0, 0.0])
-    doubling = cv.diagram(orbit, over="b", within=(-0.2, 0.2), depth=0)["PD1"]
+    doubling = cv.diagram(flow.cycle(*unit_circle(4)), over="b", within=(-0.2, 0.2), depth=0)["PD1"]
     numbers = []
     locus = cv.locus(
         doubling, over="q", within=(-0.1, 0.99), progress=lambda label, points, value: numbers.append(points)

@@ -49,22 +49,3 @@ def test_the_closure_turned_round(core, twist, length):
         wanted = written_out(*work[1:3], -turned(2, twist))
         kernels_of(core).flip(closed_by(twist), work, sign)
         np.testing.assert_allclose(written_out(*work[1:3], turned(2, twist)), wanted, atol=1e-15)
-
-
-@pytest.mark.parametrize("length", [31, 1024])
-def test_unstable_cycles_lose_nothing(core, twist, length):
-    """Saddles that stretch by 8 and shrink by 8 per node: forward products reach 1e3700, the elimination must not."""
-    work, draw = drawn(length, 2, length)
-    F, A, D, Q = work[:4]
-    angles = draw.uniform(0.0, 0.3, length + 1)
-    turn = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]]).transpose(2, 0, 1)
-    turn[length] = turn[0]
-    A[...] = turn[1:] @ np.diag([8.0, 0.125]) @ turn[:-1].transpose(0, 2, 1)
-    D[...] = -np.eye(2)
-    border, (step, tangent) = np.eye(2 * length + 1)[-1], np.zeros((2, 2 * length + 1))
-    kernels_of(core).bordered(closed_by(twist), work, border, 0.25, step, tangent)
-    x = step[:-1].reshape(length, 2)
-    following = np.roll(x, -1, axis=0)
-    following[-1] *= turned(2, twist)
-    left = np.einsum("ijk,ik->ij", A, x) - following + 0.25 * Q + F
-    assert step[-1] == pytest.approx(0.25, abs=1e-14) and np.abs(left).max() < 1e-13 * np.abs(x).max() * 8.0

@@ -5,8 +5,6 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity
-from orbits.attractors import find_attractor
-from orbits.starts.find import polish
 
 WITHIN = np.array([0.3, 1.4])
 SLOW = {"restitution": 0.41, "friction": 0.68, "mass_ratio": 0.006}
@@ -39,20 +37,6 @@ def test_times_may_be_counted_in_anything(slow, rate):
     again = cv.diagram(fast, over="amplitude", within=tuple(WITHIN), depth=1)
     same(graph, again)
     assert all(point.replay < 1e-8 for point in again.of_kind("stick"))
-
-
-@pytest.mark.parametrize("length", [300.0, 10.0, 1.0 / 300.0])
-def test_lengths_may_be_counted_in_anything(length):
-    def machine(unit):
-        sizes = {"gravity": 0.211 * unit, "distance_left": unit, "distance_right": 1.1 * unit}
-        return Cavity(restitution=0.6, friction=0.5, slope=0.1, mass_ratio=0.006, **sizes)
-
-    orbit = polish(find_attractor(machine(1.0), {"w_rate": 1.0}, amplitude=0.9).orbit)
-    graph = cv.diagram(orbit, over="amplitude", within=(0.6, 1.2), depth=1)
-    assert orbit.impacts and len(graph.special) >= 4
-    guess = orbit.nodes * [1.0, length]
-    longer = machine(length).orbit(orbit.word, periods=orbit.periods, guess=guess, amplitude=0.9 * length)
-    same(graph, cv.diagram(longer, over="amplitude", within=(0.6 * length, 1.2 * length), depth=1), length)
 
 
 def test_level_with_unlike_distances_it_is_the_absorber_in_other_units(slow):

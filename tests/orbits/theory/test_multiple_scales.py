@@ -95,22 +95,6 @@ def test_manifold_is_the_symmetric_orbit_of_a_shaken_cavity(r, h, place):
         assert np.min(np.abs(half_multipliers(velocity, r, h)[2] - critical)) < 1e-5
 
 
-@settings(max_examples=30, deadline=None)
-@given(mu=st.floats(0.05, 1.0), g=st.floats(0.05, 0.6))
-def test_sliding_bounds_by_watching_the_motion(mu, g):
-    """Between turns w' = v' -+ (mu g)(phase from the turn's middle): symmetric turns, no stick, no wall."""
-    a = mu * g
-    h = 0.5 * np.pi * a
-    low, high = ms.sliding_bounds(h)
-    for C in (low, high):
-        # turn at phase x to mode -: w' = C(cos y - cos x) + a (y - x) vanishes again at x + pi where C cos x = h
-        x = np.arccos(h / C)
-        stroke = 2 * C * np.sin(x) + C * np.cos(x) * np.pi - 0.5 * a * np.pi**2
-        assert 0.5 * stroke == pytest.approx(ms.turning_point(C, h), abs=1e-9)
-    assert low * np.sin(np.arccos(h / low)) == pytest.approx(a, rel=1e-10)  # frame's acceleration at the turn
-    assert ms.turning_point(high, h) == pytest.approx(1.0, rel=1e-12)
-
-
 @settings(max_examples=15, deadline=None)
 @given(r=restitutions, mu=st.floats(0, 1), lam=st.floats(0.05, 2), start=st.floats(0.7, 3))
 def test_free_decay_in_closed_form_is_the_integrated_flow(r, mu, lam, start):

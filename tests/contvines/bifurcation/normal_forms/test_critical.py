@@ -141,6 +141,9 @@ pair, slow = np.exp(1j * OMEGA), pytest.mark.slow
          [np.exp(2j * np.pi / 3)], THIRD),
         (bent_map(lambda w: added((0, 1), w, lambda x, y: (x**3 - 3 * x * y * y, y**3 - 3 * x * x * y)), 2, 1), "resonance-1-4",
          [1j], {"A_re": A.real, "A_im": A.imag}),
+        (bent_map(lambda w: [w[0] + w[1], w[1] + 0.7 * w[0] ** 2 - 1.3 * w[0] * w[1], 0.4 * w[2]], 3, 5), "resonance-1-1", [], {"a": 0.7, "b": -1.3}),
+        (bent_map(lambda w: [-w[0] + w[1], -w[1] + 0.7 * w[0] ** 3 - 1.3 * w[0] ** 2 * w[1], 0.4 * w[2]], 3, 5), "resonance-1-2", [],
+         {"c": 0.7, "d": -1.3}),
         # what is left of the cubic terms is in the normal form already
         pytest.param(bent_flow(zero_hopf, 3, 7), "zero-hopf", [1j * OMEGA], FOLD_AND_PAIR | {"b": 0.6, "c": -1.4, "e": 0.35}, marks=slow),
         pytest.param(bent_map(fold_neimark_sacker, 3, 7), "fold-neimark-sacker", [pair], FOLD_AND_PAIR, marks=slow),
