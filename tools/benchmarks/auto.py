@@ -1,7 +1,7 @@
-"""AUTO-07p on the same equations, where it is installed (AUTO_DIR, and a Fortran compiler): points per second only.
+"""Time of AUTO-07p per point on the same equations, if it is installed (AUTO_DIR, and a Fortran compiler).
 
-The bare executable is run, without AUTO's Python language, with the analytic Jacobian and the least output. AUTO computes
-no multipliers of an algebraic problem; its test functions for folds and branch points are on.
+The executable runs without AUTO's Python interface, with the analytic Jacobian and minimal output. AUTO computes
+no multipliers of an algebraic problem; its test functions for folds and branch points are switched on.
 """
 
 import os
@@ -24,7 +24,7 @@ RL0 = 0.2, RL1 = 0.7
 
 
 class Auto:
-    """The compiled equations in a directory of their own; `run` returns seconds and points."""
+    """AUTO with the compiled equations in a separate directory."""
 
     def __init__(self, directory=None):
         home = os.environ.get("AUTO_DIR", "")
@@ -40,7 +40,7 @@ class Auto:
         )
 
     def run(self, l, points, step=2e-3):
-        """Continue with a fixed step; seconds of wall time and the points found."""
+        """Continue with a fixed step; return seconds of wall time and the points."""
         text = CONSTANTS.format(n=2 * l, points=points, step=step)
         (self.directory / "fort.2").write_text(text)
         for name in ("fort.7", "fort.8", "fort.9"):

@@ -1,4 +1,4 @@
-"""The best clearance of the worked case beside a brute-force scan of a thousand: they must agree within the scan's grid.
+"""Compare the best clearance of the worked case with a brute-force scan of a thousand clearances; both must agree within the scan's grid.
 
 python -m tools.benchmarks.best [--values 1000] [--depth 2] [--within 8 20] [--workers 2]
 """
@@ -19,7 +19,7 @@ OVER, WITHIN = "frequency", (7.0, 9.0)
 
 
 def chosen(low, high, grid, depth):
-    """The choice of `orbits.design.best`: the half-width [mm] with the lowest peak."""
+    """Return the choice of `orbits.design.best`: the half-width [mm] with the lowest peak."""
     job = Job(family(), OVER, WITHIN, (outcome_named("peak"),), options={"depth": depth})
 
     def evaluate(values):
@@ -32,7 +32,7 @@ def chosen(low, high, grid, depth):
 
 
 def scanned(low, high, count, depth, workers=1):
-    """Half-widths and their peaks, one diagram each."""
+    """Return half-widths and their peaks, from one diagram each."""
     places = np.linspace(low, high, count)
     found = survey(
         family(), {"half_width": places.tolist()}, over=OVER, within=WITHIN, depth=depth, workers=workers

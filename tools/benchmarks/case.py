@@ -1,6 +1,6 @@
-"""The benchmark's orbit: P_2^1 of the reduced absorber, written l/2 times, and where its branch is followed.
+"""The orbit of the benchmarks: P_2^1 of the reduced absorber, with its word repeated l/2 times, and the interval of its branch.
 
-The starting point is the closed form of the symmetric orbit: with beta = (B - pi a/(2 Omega))/Omega and
+It begins with the closed form of the symmetric orbit: with beta = (B - pi a/(2 Omega))/Omega and
 H = (pi/2) a/Omega^2, C sin Psi = 1 - (pi/2) beta and C cos Psi = R beta + H.
 """
 
@@ -12,13 +12,13 @@ PARAMS = np.array(
     [0.3, 0.76, 0.5, 0.211, 0.006, 1.0]
 )  # amplitude, restitution, friction, gravity, mass ratio, frequency
 INTERVAL = (0.2, 0.7)
-STEP = 2e-3  # greatest step: the branch is followed with about a thousand points
+STEP = 2e-3  # largest step; the branch then has about a thousand points
 TOLERANCE = 1e-8
 ANGLE = 0.1
 
 
 def symmetric_orbit(beta, params=PARAMS):
-    """(Psi, B) after the impact on the left wall, and the amplitude C, of the symmetric orbit with this beta."""
+    """Return (Psi, B) after the impact on the left wall, and the amplitude C, of the symmetric orbit with this beta."""
     r, mu, g, eps, omega = params[1:]
     a = (1.0 + eps) * mu * g
     R, H = (1.0 - r) / (1.0 + r), 0.5 * math.pi * a / omega**2
@@ -27,7 +27,7 @@ def symmetric_orbit(beta, params=PARAMS):
 
 
 def start(l, beta=0.65, change=1e-6):
-    """Nodes (2 l,), amplitude and unit tangent (2 l + 1,) of the orbit written l/2 times, in the march's metric.
+    """Return nodes (2 l,), amplitude and unit tangent (2 l + 1,) of the orbit repeated l/2 times; the metric is that of the continuation.
 
     `change` is the step of the difference quotient for the tangent, which points to larger beta.
     """
@@ -48,5 +48,5 @@ def start(l, beta=0.65, change=1e-6):
 
 
 def metric(l):
-    """Weights of the unknowns and of the parameter: steps then depend neither on l nor on units."""
+    """Return the weights of the unknowns and of the parameter, with which steps depend neither on l nor on units."""
     return 1.0 / (2 * l), 1.0 / (INTERVAL[1] - INTERVAL[0]) ** 2

@@ -1,4 +1,4 @@
-"""A declared machine beside the same mathematics written with solve_ivp: a continuation point, and an event of a simulation.
+"""Compare a declared machine with the same computation by solve_ivp: time per point of a continuation, and per event of a simulation.
 
 `python -m tools.benchmarks.declared` prints ratios; times are medians of interleaved rounds in one process.
 """
@@ -15,7 +15,7 @@ PARAMETERS = {"forcing": 5.0, "frequency": 1.0, "damping": 0.05, "restitution": 
 
 
 def page() -> Machine:
-    """A mass between two walls, shaken: two states, two impacts a period."""
+    """A forced mass between two walls, with two states and two impacts per period."""
     return Machine(
         name="rattling",
         states=("x", "v"),
@@ -31,7 +31,7 @@ def page() -> Machine:
 
 
 def rates(t, y, forcing, frequency, damping):
-    """States, their sensitivities to themselves and to the frequency."""
+    """Rates of the states and of their derivatives by initial states and frequency."""
     x, v = y[:2]
     out = np.empty(8)
     out[0], out[1] = v, forcing * np.sin(frequency * t) - 2 * damping * v - x**3
@@ -42,7 +42,7 @@ def rates(t, y, forcing, frequency, damping):
 
 
 def shooting(nodes: np.ndarray, frequency: float, length: int) -> np.ndarray:
-    """One sweep of the same multiple shooting: every flight with DOP853 at 1e-10 and its variational equations."""
+    """One sweep of the same multiple shooting: integrate every flight with its variational equations by DOP853 at 1e-10."""
     begin = nodes[:, 0] / frequency
     end = np.append(begin[1:], begin[0] + 2 * np.pi * length / 2 / frequency)
     found = []
@@ -56,9 +56,9 @@ def shooting(nodes: np.ndarray, frequency: float, length: int) -> np.ndarray:
 
 
 def times(repeat: int = 7) -> dict[str, float]:
-    """Seconds: a page compiled and solved, a point (three sweeps, multipliers, margins), an event, and those of solve_ivp."""
+    """Return seconds of compiling and solving a machine file, of a point (three sweeps, multipliers, margins), of an event, and the same by solve_ivp."""
     machine = page()
-    machine.simulate({"x": 0.0}, events=1)  # the engine's own start-up
+    machine.simulate({"x": 0.0}, events=1)  # start-up of the integrator
     began = time.perf_counter()
     machine = page()
     machine.simulate({"x": 0.0}, events=1)
@@ -125,7 +125,7 @@ def times(repeat: int = 7) -> dict[str, float]:
 
 
 def problem_of(orbit, flights: int):
-    """One sweep, elimination and inspection of the orbit written so often that it has `flights` flights."""
+    """Return a function that does one sweep, elimination and inspection of the orbit repeated to have `flights` flights."""
     long = orbit.repeat(flights // 2).problem("frequency", symmetric=False)
     u, p = orbit.repeat(flights // 2).seed(long)
     work = long.workspace()

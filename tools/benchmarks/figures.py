@@ -1,4 +1,4 @@
-"""The figures that the design asks for, in one table of ratios, for both variants of the native core.
+"""Ratios of times that have a required value, in one table, for both variants of the native core.
 
     python -m tools.benchmarks.figures [--rounds 5] [--here]
 
@@ -28,7 +28,7 @@ SIMULATED = {"absorber": 1.1, "coupled": 1.9}
 
 
 def public_api(rounds):
-    """Times of a further point through the public API in times of the C loop, {l: ratio}."""
+    """Time of an additional point through the public API relative to the C loop, {l: ratio}."""
     from .run import by_api, interleaved
 
     found = {}
@@ -42,7 +42,7 @@ def public_api(rounds):
 
 
 def simulations(rounds, count=20000):
-    """An impact in times of the C loop's, {machine: ratio}."""
+    """Time of an impact relative to the C loop, {machine: ratio}."""
     from .run import interleaved
 
     found = {}
@@ -58,7 +58,7 @@ def simulations(rounds, count=20000):
 
 
 def survey_in_diagrams(machines=6):
-    """A machine of a survey, which looks for motions without a branch, too, in times of a single warm diagram of it."""
+    """Time of a machine in a survey (which also searches for motions without a branch) relative to a single warm diagram."""
     warm_diagrams(3)
     single, begun = warm_diagrams(machines), time.process_time()
     found = survey(family(), plan(machines), **ASKED, outcomes=OUTCOMES, gaps=0, workers=1)
@@ -78,7 +78,7 @@ def second_diagram(rounds):
 
 
 def measured(rounds):
-    """(what, asked, found) of this process's core; asked is None where only a comparison with an older state was asked for."""
+    """Return (name, required ratio, measured ratio) for the core of this process; the required ratio is None where only an older state is compared."""
     from .run import growth, many_starts, start_up
 
     compiler = library() is not None

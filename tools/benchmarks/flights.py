@@ -1,4 +1,4 @@
-"""Simulation per impact: ours, the C floor, and scipy's solve_ivp with events; from one and the same start."""
+"""Time of simulation per impact: the package, a plain C program, and scipy's solve_ivp with events, from the same start."""
 
 import ctypes
 
@@ -34,7 +34,7 @@ SETTLE = 5000
 
 
 class Flights:
-    """An impacting attractor of one model, from an impact on it; each method makes the next `count` impacts."""
+    """An attractor with impacts of one model; each method computes the next `count` impacts from the same one."""
 
     def __init__(self, name):
         self.model, extra = MODELS[name]
@@ -49,18 +49,18 @@ class Flights:
         self.start = np.array([psi, w, rate, *(rows[0, 5:7] if name == "coupled" else ())])
 
     def advance(self, count, state=None):
-        """Events of our simulator: codes, modes, rows."""
+        """Return events of the package's simulator: codes, modes, rows."""
         out = buffers(self.engine, count)
         self.engine.advance(self.state if state is None else state, self.params, np.inf, *out)
         return out
 
     def ours(self, count):
-        """Phases (from the start's) and speeds before the impacts."""
+        """Return phases (relative to the start) and speeds before the impacts, by the package."""
         rows = self.advance(count, self.state.copy())[2]
         return rows[:, 0] + 2.0 * np.pi * (rows[:, 1] - self.state[4]), rows[:, 3]
 
     def floor(self, count):
-        """The same by the C floor; None without a compiler."""
+        """Return the same by the C program; None without a compiler."""
         code = library("simulation.c", PLAIN)
         if code is None:
             return None
@@ -74,7 +74,7 @@ class Flights:
         return rows[:made, 0], rows[:made, 1]
 
     def solve_ivp(self, count, method="DOP853", tolerance=1e-9):
-        """The same as a user of scipy would: one flight at a time, walls as terminal events."""
+        """Return the same by scipy, one flight at a time with walls as terminal events."""
         flight = _reduced if self.name == "absorber" else _coupled
         restitution = self.params[1] if self.name == "absorber" else self.params[4]
         omega = self.params[5] if self.name == "absorber" else self.params[1]

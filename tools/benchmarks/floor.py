@@ -1,4 +1,4 @@
-"""The C floor: compiled on the fly with the system's compiler, called through ctypes."""
+"""Plain C programs as lower bounds of times ("floor"), compiled with the system's compiler and called through ctypes."""
 
 import ctypes
 import hashlib
@@ -22,7 +22,7 @@ VECTOR = ("-O3", "-march=native", "-ffast-math", "-DVECTOR")
 
 @cache
 def library(source="continuation.c", flags=PLAIN):
-    """The compiled library, or None where there is no C compiler."""
+    """Compile and load a library; return None without a C compiler."""
     compiler = shutil.which(os.environ.get("CC", "cc"))
     if compiler is None or sys.platform == "win32":
         return None
@@ -33,9 +33,9 @@ def library(source="continuation.c", flags=PLAIN):
     target = Path(tempfile.gettempdir()) / f"contvines-benchmark-{os.getuid()}-{digest}.so"
     if not target.exists():
         partial = target.with_suffix(f".{os.getpid()}")
-        # Linked without the flags: -ffast-math would make the linker add start-up code that switches subnormal numbers
-        # off in the whole process.
-        made = Path(f"{partial}.o")  # each process has its own
+        # Link without the flags: with -ffast-math the linker would add start-up code that disables subnormal numbers
+        # in the whole process.
+        made = Path(f"{partial}.o")  # one file per process
         for command in (
             [compiler, *flags, "-fPIC", "-c", "-o", str(made), str(path)],
             [compiler, "-shared", "-o", str(partial), str(made), "-lm"],
@@ -52,7 +52,7 @@ def _pointer(array):
 
 @dataclass
 class Run:
-    """Points of a branch, as every competitor hands them over."""
+    """Points of a branch in the common form of all programs that are compared."""
 
     points: np.ndarray
     values: np.ndarray
@@ -62,7 +62,7 @@ class Run:
 
 
 class Floor:
-    """Arrays for one length, allocated once; `run` follows the branch."""
+    """Continuation in C for one length of the word; arrays are allocated once."""
 
     def __init__(self, l, eliminate=FORWARD, flags=PLAIN, count=2000, step=case.STEP):
         self.library = library("continuation.c", flags)
@@ -88,10 +88,10 @@ class Floor:
         self.function = function
 
     def run(self):
-        """Follow the branch; returns the number of points."""
+        """Follow the branch; return the number of points."""
         return self.function(*self.arguments)
 
     def result(self):
-        """The run's points (the first is the start, without a row)."""
+        """Return the points of the run (the first is the start, without a row)."""
         filled = self.run()
         return Run(self.points[:filled], self.values[:filled], self.rows[:filled], *map(int, self.done))

@@ -1,7 +1,7 @@
-"""Cycles of Lorenz's equations from r = 280 down to 100, contvines beside AUTO-07p where it is installed (AUTO_DIR, and a Fortran compiler).
+"""Cycles of the Lorenz equations from r = 280 down to 100: contvines and AUTO-07p, if it is installed (AUTO_DIR, and a Fortran compiler).
 
-Same start, same number of intervals of degree 4, multipliers at each point; each chooses its steps by its own rule. Printed is processor time a
-point. `python -m tools.benchmarks.flows [INTERVALS ...]`
+Both have the same start, the same number of collocation intervals of degree 4, and multipliers at each point; each chooses its own steps. The
+processor time per point is printed. `python -m tools.benchmarks.flows [INTERVALS ...]`
 """
 
 import importlib.util
@@ -43,12 +43,12 @@ def lorenz(x, p):
 
 
 def in_python():
-    """The flow with a right-hand side in numpy, whose derivatives are complex steps."""
+    """Return the flow with a right-hand side in numpy, differentiated by complex steps."""
     return cv.FlowProblem(lorenz, [1.0, 1.0, 1.0], {"r": START})
 
 
 def in_c(folder):
-    """The flow with a compiled right-hand side; None without a compiler."""
+    """Return the flow with a compiled right-hand side; None without a compiler."""
     if shutil.which("cc") is None:
         return None
     spec = importlib.util.spec_from_file_location("lorenz", EXAMPLE)
@@ -59,7 +59,7 @@ def in_c(folder):
 
 
 class Ours:
-    """A branch by `contvines.trace`; `run` returns seconds and points."""
+    """A branch by `contvines.trace`."""
 
     def __init__(self, flow, intervals):
         orbit = flow.attractor([1.0, 1.0, 1.0], r=START)
@@ -72,19 +72,19 @@ class Ours:
         self.problem.u0 = solved(self.problem, u, START)
 
     def run(self):
-        """Processor time and the points found."""
+        """Follow the branch; return processor time and number of points."""
         begin = time.process_time()
         points = list(cv.trace(self.problem, within=(END, START), direction=-1.0))
         return time.process_time() - begin, points
 
     def data(self):
-        """Time and states from the start, as AUTO reads them."""
+        """Return times and states of the start in the form that AUTO reads."""
         orbit = self.problem.orbit(self.problem.u0, START)
         return np.column_stack([orbit.times, orbit.states])
 
 
 class AutoFlow:
-    """The executable of AUTO in a directory of its own; `run` returns seconds and points."""
+    """A branch by the executable of AUTO in a separate directory."""
 
     def __init__(self, data, intervals):
         self.directory = Path(tempfile.mkdtemp(prefix="contvines-auto-"))
@@ -98,7 +98,7 @@ class AutoFlow:
         (self.directory / "fort.2").write_text(CONSTANTS.format(intervals=intervals))
 
     def run(self):
-        """Processor time and the rows of the branch."""
+        """Follow the branch; return processor time and its rows."""
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
         subprocess.run(["./lorenz"], cwd=self.directory, check=True, capture_output=True, env=environment)
@@ -108,7 +108,7 @@ class AutoFlow:
 
 
 def competitors(intervals):
-    """All that can be run here, by name."""
+    """Return all programs that are installed here, by name."""
     found: dict[str, Any] = {"numpy": Ours(in_python(), intervals)}
     compiled = in_c(tempfile.mkdtemp(prefix="contvines-lorenz-"))
     if compiled is not None:
@@ -119,7 +119,7 @@ def competitors(intervals):
 
 
 def main(rounds=7):
-    """Medians of rounds in turns, in milliseconds a point, and ratios to AUTO."""
+    """Print medians over interleaved rounds, in milliseconds per point, and ratios to AUTO."""
     for intervals in map(int, sys.argv[1:] or (20, 80, 320)):
         runs = competitors(intervals)
         times = {name: [] for name in runs}

@@ -1,11 +1,11 @@
-"""Sparse problems against a straight script with scipy.sparse: two-dimensional Bratu on n by n inner points.
+"""Compare sparse problems with a short script that uses scipy.sparse: two-dimensional Bratu problem on n by n inner points.
 
     python -m tools.benchmarks.large [n]
     python -m tools.benchmarks.large 316 whole
     python -m tools.benchmarks.large 5000 line
 
-The script does what a point takes: two factorisations of Newton's method in a bordered system by block elimination, no
-location of anything, no stability. Printed are processor seconds a point, their ratios, and the largest memory.
+The script does the minimum for a point: two factorisations in Newton's method for a bordered system by block elimination, without special
+points and stability. Processor seconds per point, their ratios, and the largest memory are printed.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tools.brusselator import brusselator
 
 
 def bratu(n: int) -> tuple[Any, Any, Any]:
-    """F, F_u, F_p of Laplace u + p exp(u) = 0 on the unit square."""
+    """Return F, F_u, F_p of Laplace u + p exp(u) = 0 on the unit square."""
     line = (
         sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]) * (n + 1) ** 2
     )
@@ -40,7 +40,7 @@ def bratu(n: int) -> tuple[Any, Any, Any]:
 
 
 def script(n: int, points: int, step: float = 0.05) -> float:
-    """Seconds a point of forty lines that anybody would write."""
+    """Seconds per point of a simple script."""
     F, jacobian, derivative = bratu(n)
     N = n * n
     u, p = np.zeros(N), 0.0
@@ -61,7 +61,7 @@ def script(n: int, points: int, step: float = 0.05) -> float:
 
 
 def package(n: int, points: int, spectrum: str = "none") -> tuple[float, int]:
-    """Seconds a point of ours, and how many there were."""
+    """Seconds per point of the package, and the number of points."""
     F, jacobian, derivative = bratu(n)
     problem = cv.AlgebraicProblem(
         F, np.zeros(n * n), 0.0, jacobian=jacobian, derivative=derivative, spectrum=spectrum, scale=1.0
@@ -73,7 +73,7 @@ def package(n: int, points: int, spectrum: str = "none") -> tuple[float, int]:
 
 
 def fold(n: int, spectrum: str = "none") -> Any:
-    """The fold of the diagram."""
+    """Return the fold of the diagram."""
     F, jacobian, derivative = bratu(n)
     problem = cv.AlgebraicProblem(
         F, np.zeros(n * n), 0.0, jacobian=jacobian, derivative=derivative, spectrum=spectrum
@@ -83,7 +83,7 @@ def fold(n: int, spectrum: str = "none") -> Any:
 
 
 def fold_by_itself(n: int, u: np.ndarray, p: float) -> float:
-    """The fold near a solution, by Newton's method with scipy alone.
+    """Solve for the fold near a solution by Newton's method with scipy alone.
 
     F = 0 and g = 0, where [[F_u, b], [b, 0]] (v, g) = (0, 1); F_u is symmetric, so g_z = -v.(F_u)_z v. Griewank and Reddien, IMA J. Numer.
     Anal. 4 (1984) 295.
@@ -109,7 +109,7 @@ def fold_by_itself(n: int, u: np.ndarray, p: float) -> float:
 
 
 def whole(n: int) -> None:
-    """The whole branch from p = 0 through its fold and far up, with the fold by itself beside it."""
+    """Follow the whole branch from p = 0 through its fold, and compare the fold with the one solved by scipy."""
     F, jacobian, derivative = bratu(n)
     problem = cv.AlgebraicProblem(F, np.zeros(n * n), 0.0, jacobian=jacobian, derivative=derivative)
     began = time.process_time()
@@ -130,7 +130,7 @@ def whole(n: int) -> None:
 
 
 def line(m: int) -> None:
-    """Brusselator on a line of m cells: the homogeneous state's first Turing point, and its Hopf point with ten eigenvalues, beside closed forms."""
+    """Brusselator on a line of m cells: compare the first Turing point of the homogeneous state, and its Hopf point (with ten eigenvalues), with closed forms."""
     modes = 4.0 * m**2 * np.sin(np.arange(1, 9) * np.pi / (2 * m)) ** 2
     for kind, (A, D, E), within, spectrum in (
         ("branch-point", (2.0, 0.02, 0.5), (2.0, 2.16), "none"),

@@ -1,8 +1,8 @@
-"""A point of a locus beside a point of the branch on which it begins, by processor time.
+"""Compare the processor time of a point of a locus with that of a point of the branch on which the locus begins.
 
-Both through the public API, with the same largest step; long runs less short ones, so that what is done once counts in neither. The
-words are written many times over: the symmetric motion with two impacts for the fold, the asymmetric one, followed beyond its
-borders, for the period doubling and the velocity graze. An odd number of repetitions keeps a multiplier -1 what it is.
+Both are computed through the public API with the same largest step; the time of a short run is subtracted from that of a long one, so that
+one-time work does not count. The words are repeated many times: the symmetric motion with two impacts for the fold; the asymmetric one,
+followed beyond its borders, for the period doubling and the velocity graze. With an odd number of repetitions a multiplier -1 stays -1.
 """
 
 import statistics
@@ -24,15 +24,15 @@ OVER, WITHIN = "friction", (0.1, 0.9)
 
 
 class Uncrossed(AsWritten):
-    """Orbits that are not followed to other words at their borders."""
+    """Orbits whose branch does not continue with other words at borders."""
 
     def beyond(self, *arguments, **options):
-        """Nothing."""
+        """Return no continuation."""
         return []
 
 
 def written(times, symmetric):
-    """The motion with two impacts written `times` times over."""
+    """Return the problem of the motion with two impacts, repeated `times` times."""
     if symmetric:
         u, _, _ = case.start(2 * times)
         value = case.start(2)[1]
@@ -56,27 +56,27 @@ class Loci:
         self.starts = {kind: graph.of_kind(kind)[0] for kind in KINDS[sort]}
 
     def settings(self, longer):
-        """Of a run with steps `longer` times as long."""
+        """Return the settings of a run with steps `longer` times as long."""
         return {"max_step": STEP * longer, "first_step": 0.5 * STEP * longer, "max_points": 1_000_000}
 
     def graph(self, longer):
-        """The branch as a diagram."""
+        """Compute the branch as a diagram."""
         return cv.diagram(
             self.problem, within=self.within, depth=0, virtual=True, settings=self.settings(longer)
         )
 
     def branch(self, longer):
-        """Number of points of the branch."""
+        """Compute the branch; return its number of points."""
         return sum(len(branch) for branch in self.graph(longer))
 
     def locus(self, kind, longer):
-        """The locus of a kind."""
+        """Compute the locus of a kind."""
         return cv.locus(
             self.starts[kind], over=OVER, within=WITHIN, virtual=True, settings=self.settings(longer)
         )
 
     def runs(self):
-        """name -> callable of the step's factor that returns a number of points."""
+        """Return name -> function of the step's factor that returns a number of points."""
         found = {"branch": self.branch}
         for kind in self.starts:
             found[kind] = lambda longer, kind=kind: len(self.locus(kind, longer))
@@ -84,7 +84,7 @@ class Loci:
 
 
 def seconds_per_point(run):
-    """Processor seconds of a point, those of a short run taken off."""
+    """Processor seconds per point, with those of a short run subtracted."""
     marks, points = [time.process_time()], []
     for longer in (1.0, 4.0):
         points.append(run(longer))
@@ -93,7 +93,7 @@ def seconds_per_point(run):
 
 
 def ratios(rounds, repetitions=REPETITIONS):
-    """{kind: {l: seconds}}, {kind: {l: times a point of its branch}}, {kind: exponent of growth from l = 32 on}; all in turns."""
+    """Return {kind: {l: seconds per point}}, {kind: {l: ratio to a point of its branch}} and {kind: exponent of growth from l = 32 on}, from interleaved rounds."""
     seconds, times = {}, {}
     for count in repetitions:
         for sort in SPANS:
@@ -117,7 +117,7 @@ def ratios(rounds, repetitions=REPETITIONS):
 
 
 def chart_in_diagrams(rounds):
-    """Median over rounds, in turns, of the time of the chart of amplitude and friction in times of a diagram."""
+    """Median over interleaved rounds of the time of the chart of amplitude and friction, relative to a diagram."""
     orbit = MACHINE.symmetric_orbit(amplitude=0.55)
     found = []
     for k in range(rounds + 1):

@@ -1,4 +1,4 @@
-"""Our own competitors: the compiled loop alone, and the public API with everything it looks for."""
+"""The package in the benchmarks: the compiled loop alone, and the public API with all its searches."""
 
 import numpy as np
 
@@ -21,22 +21,22 @@ MACHINE = Absorber(
 
 
 class AsWritten(OrbitProblem):
-    """Orbits followed with all their events, though they repeat a shorter one."""
+    """Orbits that are followed with their whole word, although it repeats a shorter one."""
 
     def root(self, u, p):
-        """None: the word is kept."""
+        """Return None, so that the word is not shortened."""
         return None
 
 
 def problem(l):
-    """The full word written l/2 times, not reduced by its symmetry."""
+    """Return the problem of the word repeated l/2 times, without reduction by symmetry."""
     found = AsWritten(MACHINE, Word.parse("LR").repeat(l // 2), l // 2, "amplitude", case.PARAMS)
     found.u0, found.p0, _ = case.start(l)
     return found
 
 
 class Core:
-    """The compiled loop: arrays allocated once, one call for the whole branch."""
+    """The compiled loop; arrays are allocated once, and one call computes the whole branch."""
 
     def __init__(self, l, count=2000, step=case.STEP):
         self.problem = problem(l)
@@ -66,36 +66,36 @@ class Core:
         )
 
     def run(self):
-        """Follow the branch; returns the number of points."""
+        """Follow the branch; return the number of points."""
         return self.loop.march(*self.arguments)[0]
 
     def result(self):
-        """The run's points; the last one may lie on the end of the interval."""
+        """Return the points of the run; the last one may lie at the end of the interval."""
         filled = self.run()
         return Run(self.points[:filled], self.values[:filled], self.rows[:filled], 0, 0)
 
 
 class PublicAPI:
-    """`cv.diagram` without switching: both directions, events located, stability, margins, the finished graph."""
+    """`cv.diagram` of one branch: both directions, special points, stability, margins, the complete graph."""
 
     def __init__(self, l, step=case.STEP):
         self.problem = problem(l)
         self.settings = {"max_step": step, "first_step": 0.5 * step, "max_points": 1_000_000}
 
     def run(self):
-        """Returns the number of points on the branch."""
+        """Compute the diagram; return the number of points on the branch."""
         self.graph = cv.diagram(self.problem, within=case.INTERVAL, depth=0, settings=self.settings)
         return sum(len(branch) for branch in self.graph)
 
 
 class Diagram:
-    """The whole automatic diagram of a study in a warm process: all branches, borders crossed, special points replayed."""
+    """The whole diagram of a study in a warm process: all branches, beyond borders, special points compared with simulation."""
 
     def __init__(self, path):
         self.study = read_study(path)
         self.seed = first_orbit(self.study)
 
     def run(self):
-        """Returns the number of points on all branches."""
+        """Compute the diagram; return the number of points on all branches."""
         self.graph = run_diagram(self.study, self.seed)
         return sum(len(branch) for branch in self.graph)

@@ -1,10 +1,10 @@
-"""Peaks of drawn surveys beside brute force: simulations up, down and from random states, refined about the largest response.
+"""Compare peaks of random surveys with brute force: simulated sweeps up, down and from random states, refined near the largest response.
 
     python -m tools.benchmarks.peaks [--surveys 20] [--machines 2] [--first 0] [--depth 1] [--values 121]
-    python -m tools.benchmarks.peaks --design --depth 0 --surveys 30      the thirty places of docs/design.md
+    python -m tools.benchmarks.peaks --design --depth 0 --surveys 30      the thirty machines of docs/design.md
 
-Each machine of a survey must have the peak of the simulations to 1 %, or say in its note that it is not known in the whole interval. A peak
-above that of all simulations is confirmed by a simulation from the survey's own motion.
+Each machine of a survey must have the peak of the simulations to 1 %, or its note must state that its response is not known in the whole interval.
+A peak above that of all simulations is confirmed by a simulation from the survey's motion.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from orbits.design import Family
 from orbits.machines.physical import physical
 
 OVER, MEASURE = "frequency", "max_abs_q1"
-AGREE = 0.01
+AGREE = 0.01  # largest relative difference of peaks
 REPLAYED, LONGEST = (
     400,
     24,
@@ -38,7 +38,7 @@ RANDOM = (12, 6)  # values, and random states at each
 
 @dataclass(frozen=True)
 class Drawn:
-    """A survey of machines that differ in their half-widths, and the interval of its diagrams."""
+    """A survey of machines with different half-widths, and the interval of its diagrams."""
 
     family: Any
     half_widths: list[float]
@@ -46,7 +46,7 @@ class Drawn:
 
 
 def drawn(number: int, machines: int) -> Drawn:
-    """A survey drawn at random: clearances from a tenth of the linear peak to more than all of it."""
+    """Draw a random survey; half-widths are 0.1 to 1.5 times the linear peak."""
     rng = np.random.default_rng([28, number])
     hertz = float(rng.uniform(4.0, 15.0))
     damping = float(np.exp(rng.uniform(np.log(0.004), np.log(0.03))))
@@ -61,7 +61,7 @@ def drawn(number: int, machines: int) -> Drawn:
         "base_amplitude": f"{base} mm",
         "frequency": f"{hertz} Hz",
     }
-    linear = base / (2.0 * damping)  # largest displacement of the oscillator alone
+    linear = base / (2.0 * damping)  # largest displacement of the bare oscillator
     half_widths = np.sort(np.exp(rng.uniform(np.log(0.1), np.log(1.5), machines))) * linear
     within = (hertz * float(rng.uniform(0.85, 0.97)), hertz * float(rng.uniform(1.03, 1.15)))
     machine = physical("coupled", {**case, "half_width": f"{half_widths[0]} mm"})
@@ -69,7 +69,7 @@ def drawn(number: int, machines: int) -> Drawn:
 
 
 def designed(number: int) -> Drawn:
-    """The machine of docs/design.md with a half-width, friction and restitution drawn at random."""
+    """Return the machine of docs/design.md with random half-width, friction and restitution."""
     study = read_study("examples/design/machine.toml")
     rng = np.random.default_rng([34, number])
     machine = study.model.with_(
@@ -80,7 +80,7 @@ def designed(number: int) -> Drawn:
 
 
 def brute(machine: Any, within: tuple[float, float], values: int) -> tuple[float, float]:
-    """The largest response that simulations meet, and where."""
+    """Return the largest response of all simulations, and its parameter value."""
     grid = np.linspace(*within, values)
     step, seen = grid[1] - grid[0], []
     for places in (grid, grid[::-1]):
@@ -107,7 +107,7 @@ def brute(machine: Any, within: tuple[float, float], values: int) -> tuple[float
 
 
 def confirmed(one: Drawn, half_width: float, depth: int) -> float:
-    """The response to which a simulation settles that begins on the survey's motion, where its response is near the peak."""
+    """Return the response on which a simulation settles that begins on the survey's motion near the peak."""
     seed = one.family({"half_width": half_width})
     graph = cv.diagram(seed, over=OVER, within=one.within, depth=depth)
     complete(graph, population_of(seed, OVER), 5)
@@ -120,7 +120,7 @@ def confirmed(one: Drawn, half_width: float, depth: int) -> float:
 
 @dataclass(frozen=True)
 class Verdict:
-    """One machine of a survey: its peak, that of the simulations, and whether the two are one."""
+    """One machine of a survey: its peak, that of the simulations, and whether both agree."""
 
     number: int
     half_width: float
@@ -135,12 +135,12 @@ class Verdict:
 
     @property
     def wrong(self) -> bool:
-        """Whether the survey states a peak that simulations contradict."""
+        """Whether simulations contradict the survey's peak."""
         return not self.agrees and not self.note
 
 
 def judged(number: int, one: Drawn, depth: int, values: int) -> list[Verdict]:
-    """A survey, machine by machine."""
+    """Compute a survey and compare each machine."""
     begun = time.process_time()
     made = survey(
         one.family, {"half_width": one.half_widths}, over=OVER, within=one.within, outcomes=("peak",), depth=depth, workers=1

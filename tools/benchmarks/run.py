@@ -1,7 +1,7 @@
-"""`python -m tools.benchmarks`: ratio tables, growth with the length of the word, simulation, start-up.
+"""`python -m tools.benchmarks`: tables of ratios, growth with the length of the word, simulation, start-up.
 
-Medians of interleaved rounds, so that whatever else the machine does hits all competitors alike. Ratios mean
-something, times belong to the machine that is named. Nothing here passes or fails by time.
+Times are medians of interleaved rounds, so that other load affects all programs equally. Compare ratios; absolute times
+are those of the computer that is named. No benchmark passes or fails by time.
 """
 
 import argparse
@@ -35,7 +35,7 @@ GROWTH = tuple(2**k for k in range(1, 13))
 
 
 def machine():
-    """A line that names the machine and the versions."""
+    """Return a line with the processor and the versions."""
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():
@@ -54,7 +54,7 @@ def machine():
 
 
 def interleaved(competitors, rounds, least=4e-3):
-    """Median seconds per point of each competitor, the rounds taking turns; each returns its number of points."""
+    """Return median seconds per point of each program over interleaved rounds; each callable returns its number of points."""
     times = {name: [] for name in competitors}
     for run in competitors.values():
         run()
@@ -69,7 +69,7 @@ def interleaved(competitors, rounds, least=4e-3):
 
 
 def competitors(l, points, step, slow):
-    """name -> callable that makes points and says how many."""
+    """Return name -> function that computes points and returns their number."""
     count = points + 1
     found = {}
     if library() is not None:
@@ -91,7 +91,7 @@ def competitors(l, points, step, slow):
 
 
 def by_auto(auto, l, rounds):
-    """Median seconds per point: long runs less short ones, so that starting the program does not count."""
+    """Median seconds per point; short runs are subtracted from long ones, so that the start of the program does not count."""
     points = {2: 20000, 8: 5000, 32: 500, 128: 12}.get(l)
     if points is None:
         return None
@@ -105,7 +105,7 @@ def by_auto(auto, l, rounds):
 
 
 def by_api(l, step, rounds):
-    """Seconds per point of the public API (long branches less short ones), and seconds per branch."""
+    """Return seconds per point of the public API (difference of long and short branches), and seconds per branch."""
     long, short = PublicAPI(l, step), PublicAPI(l, 4.0 * step)
     points = long.run(), short.run()
     times = interleaved(
@@ -116,11 +116,11 @@ def by_api(l, step, rounds):
 
 
 def continuation(rounds, lengths=LENGTHS):
-    """Microseconds per point and ratios, as {name: {l: seconds}}."""
+    """Return times per point, {name: {l: seconds}}."""
     table = {}
     auto = Auto()
     for l in lengths:
-        # long branches, so that what is done once per branch counts little; everybody takes the same steps
+        # long branches, so that one-time work per branch counts little; all programs take the same steps
         step = case.STEP / 10 if l < 64 else case.STEP
         points = max(40, min(6000, 200_000 // l))
         for name, seconds in interleaved(competitors(l, points, step, l <= 128), rounds).items():
@@ -136,7 +136,7 @@ def continuation(rounds, lengths=LENGTHS):
 
 
 def growth(rounds, lengths=GROWTH):
-    """Seconds per point of the compiled loop against l (forty points), and the exponents: of all lengths, from 32 on."""
+    """Return seconds per point of the compiled loop for each l (forty points), and exponents of growth: for all lengths, and from 32 on."""
     seconds = []
     for l in lengths:
         core = Core(l, 41)
@@ -150,7 +150,7 @@ def growth(rounds, lengths=GROWTH):
 
 
 def whole_diagrams(rounds, studies=STUDIES):
-    """Of examples' whole diagrams in a warm process, beside the compiled loop: {name: {study: seconds}}, and how large they are."""
+    """Return times of whole diagrams of examples in a warm process and of the compiled loop, {name: {study: seconds}}, and the diagrams' sizes."""
     table, sizes = {}, {}
     for study in studies:
         diagram, core = Diagram(ROOT / "examples" / f"{study}.toml"), Core(2)
@@ -165,7 +165,7 @@ def whole_diagrams(rounds, studies=STUDIES):
 
 
 def simulation(rounds, count=20000):
-    """Nanoseconds per impact: {model: {name: seconds}}."""
+    """Return times per impact, {model: {name: seconds}}."""
     table = {}
     for name in MODELS:
         flights = Flights(name)
@@ -179,7 +179,7 @@ def simulation(rounds, count=20000):
 
 
 def many_starts(rounds, count=10_000):
-    """Processor seconds per start: {name: seconds}, in turns."""
+    """Return processor seconds per start, {name: seconds}, from interleaved rounds."""
     starts = Starts(count)
     work = {
         "one batch": starts.batch,
@@ -198,7 +198,7 @@ def many_starts(rounds, count=10_000):
 
 
 def start_up(repeats=3):
-    """Processor seconds of commands in processes of their own: {what: seconds}."""
+    """Return processor seconds of commands in separate processes, {command: seconds}."""
     found = {}
     with tempfile.TemporaryDirectory() as directory:
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -236,7 +236,7 @@ def show(title, names, columns, cell):
 
 
 def two_parameters(rounds, repetitions):
-    """Print what a point of a locus costs, in processor time and in points of its branch."""
+    """Print the processor time of a point of a locus, in seconds and relative to a point of its branch."""
     seconds, times, exponents = ratios(rounds, repetitions)
     lengths = [2 * count for count in repetitions]
     columns = [f"l={l}" for l in lengths]
@@ -254,7 +254,7 @@ def two_parameters(rounds, repetitions):
 
 
 def number(value, scale=1.0):
-    """Three digits, or a dash."""
+    """Format a number with three digits; None is a dash."""
     if value is None:
         return "-"
     value *= scale

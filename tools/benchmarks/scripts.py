@@ -1,7 +1,7 @@
-"""What a user would write today for the same branch: numpy and scipy, vectorised, analytic Jacobian; fixed steps.
+"""Scripts with numpy and scipy for the same branch, as a user would write them: vectorised, with analytic Jacobian and fixed steps.
 
-Each function follows the branch from the start of `case` with a fixed step of arclength and three Newton iterations at
-most, to 1e-10, and returns amplitudes and multipliers.
+Each function follows the branch from the start of `case` with a fixed step of arclength and at most three Newton iterations,
+to 1e-10, and returns amplitudes and multipliers.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from . import case
 
 
 def residual(u, C):
-    """2 l residuals."""
+    """Return the 2 l residuals."""
     r, mu, g, eps, omega = case.PARAMS[1:]
     a = (1.0 + eps) * mu * g
     psi, b = u[0::2], u[1::2]
@@ -29,7 +29,7 @@ def residual(u, C):
 
 
 def blocks(u, C):
-    """dF_i/dx_i and dF_i/dx_{i+1}, both (l, 2, 2), and dF/dC (2 l,)."""
+    """Return dF_i/dx_i and dF_i/dx_{i+1}, both (l, 2, 2), and dF/dC (2 l,)."""
     r, mu, g, eps, omega = case.PARAMS[1:]
     a = (1.0 + eps) * mu * g
     psi, b = u[0::2], u[1::2]
@@ -53,7 +53,7 @@ def blocks(u, C):
 
 
 def jacobian(u, C):
-    """Dense (2 l, 2 l), and dF/dC."""
+    """Return the dense Jacobian (2 l, 2 l), and dF/dC."""
     A, D, Q = blocks(u, C)
     l = len(A)
     J = np.zeros((l, 2, l, 2))
@@ -64,7 +64,7 @@ def jacobian(u, C):
 
 
 def multipliers(u, C):
-    """Eigenvalues of the product of -D^-1 A."""
+    """Return the eigenvalues of the product of -D^-1 A."""
     A, D, _ = blocks(u, C)
     product = np.eye(2)
     for factor in -np.linalg.solve(D, A):
@@ -81,7 +81,7 @@ def _places(l):
 
 
 def dense(l, points, step=case.STEP):
-    """Bordered system by numpy's dense solver."""
+    """Solve the bordered system with numpy's dense solver."""
 
     def solve(u, C, row, sides):
         J, Q = jacobian(u, C)
@@ -91,7 +91,7 @@ def dense(l, points, step=case.STEP):
 
 
 def sparse(l, points, step=case.STEP):
-    """Bordered system by scipy's sparse LU."""
+    """Solve the bordered system with scipy's sparse LU factorisation."""
     rows, here, ahead = _places(l)
     n = 2 * l
     i = np.concatenate([rows, rows, np.arange(n), np.full(n + 1, n)])
@@ -129,7 +129,7 @@ def _follow(l, points, step, solve):
 
 
 def by_fsolve(l, points, step=case.STEP):
-    """scipy.optimize.fsolve at given amplitudes (no arclength), analytic Jacobian."""
+    """Solve with scipy.optimize.fsolve at given amplitudes (without arclength), with analytic Jacobian."""
     u, C, _ = case.start(l)
     amplitudes, spectra = [C], [multipliers(u, C)]
     for _ in range(points):

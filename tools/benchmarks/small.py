@@ -1,9 +1,9 @@
-"""Overhead of the package a point: thirty unknowns, F and its Jacobian plain Python with numpy.
+"""Overhead of the package per point, for thirty unknowns with F and its Jacobian in Python and numpy.
 
     python -m tools.benchmarks.small
 
-Processor time a point, less that of the user's functions, beside that of numpy's own linear algebra: as many solutions of the
-bordered system of 31 as there are evaluations of the Jacobian.
+The processor time per point without the user's functions is compared with that of numpy's linear algebra alone: one solution of the
+bordered system of 31 equations for each evaluation of the Jacobian.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Many starts at once: what a million of 200 impacts each takes, beside the plain simulator's time for the same flights."""
+"""Time of many starts at once: a batch of starts with 200 impacts each, compared with the plain simulator for the same flights."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ AMPLITUDE = 0.6
 
 
 class Starts:
-    """Starts of the paper's absorber, followed for 100 periods in one batch or one by one, and a basin picture of as many."""
+    """Starts of the paper's absorber, simulated for 100 periods in one batch or one by one, and a basin picture with as many starts."""
 
     def __init__(self, count=2000):
         model = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
@@ -26,16 +26,16 @@ class Starts:
         self.states[:, [PSI, W, RATE]] = self.drawn
 
     def batch(self):
-        """All in one compiled loop; the states they reach, shape (n, S)."""
+        """Simulate all starts in one compiled loop; return the final states, shape (n, S)."""
         states, n = self.states.copy(), len(self.states)
         found = {name: np.zeros(n, np.int64) for name in ("periods", "impacts", "holds", "outcome")}
         found["gaps"] = np.full(n, np.inf)
-        # no state is as near as 0: every start is followed to the end
+        # with distance 0 no start counts as settled, so every start is simulated to the end
         Settling(self.engine, self.params, PERIODS - 1.0, 1, 0.0).settle(states, found)
         return states
 
     def plain(self):
-        """One by one with the simulator that all else uses."""
+        """Simulate the starts one by one with the plain simulator."""
         states = self.states.copy()
         for state in states:
             self.engine.launch(state, self.params)
@@ -44,18 +44,18 @@ class Starts:
         return states
 
     def basin(self):
-        """A picture of as many starts, distinguished by what they reach."""
+        """Compute a basin picture with as many starts."""
         import contvines
 
         side = int(np.sqrt(len(self.states)))
         return contvines.basins(self.population, at=AMPLITUDE, points=side)
 
     def census(self):
-        """As many drawn starts, distinguished likewise."""
+        """Find the attractors of as many random starts."""
         side = int(np.sqrt(len(self.states)))
         return self.population.settle(self.drawn[: side * side], AMPLITUDE)
 
 
 def places(states):
-    """Where states are, but for the count of turns: w, w', and v, v' of the coupled machine."""
+    """Return the states without phase: w, w', and v, v' of the coupled machine."""
     return states[:, [W, RATE, *range(V, states.shape[1])]]

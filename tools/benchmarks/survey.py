@@ -1,9 +1,11 @@
-"""500 response diagrams of the coupled machine over clearance and restitution: the same file from one process, from two, and from a dask
-cluster of two worker processes of which one is killed half way; how much faster two are, and what a machine costs beside one warm diagram.
+"""Survey of 500 frequency responses of the coupled machine over clearance and restitution.
+
+The file must be the same from one process, from two, and from a dask cluster of two workers one of which is killed half way. Times of one and two
+processes are compared, and the time per machine with that of one warm diagram.
 
     python -m tools.benchmarks.survey [--machines 500] [--skip-cluster]
 
-Times mean something on a quiet machine only; processor times are printed beside them.
+Wall times are reliable only without other load; processor times are printed, too.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ CASE = {
     "restitution": 0.6, "friction": 0.1, "base_amplitude": "0.3 mm", "frequency": "7.9 Hz",
 }  # fmt: skip
 ASKED = {"over": "frequency", "within": (7.0, 9.0), "depth": 1}
-SAMPLE = 12  # machines of the survey whose diagrams are made one by one, too
+SAMPLE = 12  # machines of the survey whose diagrams are also computed one by one
 OUTCOMES = ("peak", "lower_peak", "covered", "stable:LR")
 
 
@@ -51,7 +53,7 @@ def spent():
 
 
 def made(folder, name, machines, **options):
-    """A survey, its file, and the time it took."""
+    """Compute a survey; return it as read from its file, and the times."""
     begun, used = time.perf_counter(), spent()
     found = survey(family(), plan(machines), **ASKED, outcomes=OUTCOMES, gaps=0, **options)
     took = time.perf_counter() - begun, spent() - used
@@ -61,7 +63,7 @@ def made(folder, name, machines, **options):
 
 
 def on_a_cluster(folder, machines):
-    """With a worker killed when half of the rows are there."""
+    """Compute the survey on a cluster, and kill a worker after half of the rows."""
     from distributed import LocalCluster
 
     killed, seen = [], []
@@ -79,7 +81,7 @@ def on_a_cluster(folder, machines):
 
 
 def same(a, b):
-    """Value by value, notes and axes included."""
+    """Whether two surveys are equal in all values, notes and axes."""
     return (
         list(a.columns) == list(b.columns)
         and all(np.array_equal(a[name], b[name], equal_nan=True) for name in a.columns)
@@ -89,7 +91,7 @@ def same(a, b):
 
 
 def warm_diagrams(machines):
-    """Processor times of single diagrams of some of the machines in a warm process, seeds included, three rounds each: the mean of the medians."""
+    """Mean processor time of single diagrams of some of the machines in a warm process, including their seeds; median of three rounds each."""
     made_by = family()
     systems = planned(plan(machines)).systems()
     chosen = systems[:: max(len(systems) // SAMPLE, 1)]

@@ -1,4 +1,4 @@
-"""A demo problem of another package: its equations as they are printed, and where it is continued from."""
+"""A demo problem of another package: its equations as printed there, and the start of its continuation."""
 
 from __future__ import annotations
 
@@ -26,21 +26,23 @@ class Demo:
     ----------
     name : str
     source : str
-        Packages that come with it, and the file.
+        Packages that contain it, and its name there.
     equations : callable
-        (u, p, m) -> list of numbers; ``m`` has the functions for floats, or for many digits.
+        (u, p, m) -> list of numbers; ``m`` has the elementary functions for floats or for many digits.
     u, p : start
+        Unknowns and parameter.
     within : (float, float)
+        Interval of the parameter.
     parameter : str
-        Its name in the source.
+        Name of the parameter in the source.
     kind : {"flow", "map"}
     depth : int
     options : dict
         Further arguments of the problem.
     printed : str
-        What the source, or its documentation, prints.
+        Results that the source or its documentation prints.
     exact : dict
-        Values by kind where the defining equations are singular: branch points with two null vectors.
+        Kind -> value of special points whose defining equations are singular: branch points with two null vectors.
     """
 
     name: str
@@ -57,5 +59,5 @@ class Demo:
     exact: dict[str, float] = field(default_factory=dict)
 
     def function(self, u: np.ndarray, p: Any) -> np.ndarray:
-        """For contvines."""
+        """Return the equations as a function for contvines."""
         return np.array(self.equations(u, p, NUMBERS))

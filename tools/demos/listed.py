@@ -1,4 +1,4 @@
-"""The demos of equilibria: where each is continued from, and how far."""
+"""The list of demos of equilibria, with start and interval of each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes docs/demos.md and docs/demos_cycles.md from the tables.
+"""Write docs/demos.md and docs/demos_cycles.md from the tables.
 
 python -m tools.demos.make_page
 """
@@ -41,7 +41,7 @@ LP fold, BP branch point, SB symmetry breaking, HB Hopf, PD period doubling, NS 
 
 
 def render() -> str:
-    """The page."""
+    """Return the text of docs/demos.md."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
     demos = [*listed.DEMOS, *maps.DEMOS]
     alike = json.loads(UNITS.read_text(encoding="utf-8"))

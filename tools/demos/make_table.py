@@ -1,8 +1,8 @@
-"""Writes table.json: the special points of every demo as the witness has them.
+"""Write table.json with the special points of every demo as the independent solver (`witness.py`) computes them.
 
     python -m tools.demos.make_table [NAME...]
 
-The guesses come from this package's own graphs; whether there are more is asked by `search.py`.
+Guesses come from the graphs of this package; `search.py` searches for further points.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ TABLE = Path(__file__).with_name("table.json")
 
 
 def graph_of(demo: Demo) -> Any:
-    """The diagram of a demo with plain settings."""
+    """Compute the diagram of a demo with default settings."""
     make: Any = cv.AlgebraicProblem if demo.kind == "flow" else cv.MapProblem
     options = {"spectrum": "flow", **demo.options} if demo.kind == "flow" else demo.options
     problem = make(demo.function, demo.u, demo.p, parameter=demo.parameter, **options)
@@ -29,13 +29,13 @@ def graph_of(demo: Demo) -> Any:
 
 
 def points_of(graph: Any) -> list[tuple[str, float, list[float]]]:
-    """Kind, value and unknowns of the special points, ends of the interval left out."""
+    """Return kind, value and unknowns of the special points, without ends of the interval."""
     points = [(s.kind, float(s.value), s.u.tolist()) for s in graph.special.values() if s.kind != "end"]
     return sorted(points, key=lambda point: (point[0], point[1]))
 
 
 def solved(demo: Demo, kind: str, value: float, u: list[float]) -> tuple[float, list[float]]:
-    """The witness's value, and its unknowns (those of a cycle's first point)."""
+    """Return the value and unknowns (of a cycle: of its first point) from the independent solver."""
     n = len(demo.u)
     if kind in demo.exact:
         return demo.exact[kind], u[:n]
@@ -46,7 +46,7 @@ def solved(demo: Demo, kind: str, value: float, u: list[float]) -> tuple[float, 
 
 
 def main(names: list[str]) -> None:
-    """Make the table anew, or the rows of some demos."""
+    """Write the whole table, or the rows of some demos."""
     demos = [*listed.DEMOS, *maps.DEMOS]
     table = json.loads(TABLE.read_text(encoding="utf-8")) if names else {}
     for demo in demos:

@@ -1,9 +1,9 @@
-"""Asks whether the table lacks special points: Newton's method for their equations from many random starts.
+"""Search for special points that are missing in the table: Newton's method for their equations from many random starts.
 
     python -m tools.demos.search [NAME...]
 
-Prints what it finds that is not in the table. What is left belongs to branches that do not hang together with the start
-(adaptx, lorenz 84 and two patches have some); of cycles only those of length one are looked for.
+Points that are not in the table are printed. Those that are known belong to branches that are not connected to the start
+(adaptx, lorenz 84 and two patches have some). For maps only fixed points are searched for, no longer cycles.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ KINDS = {
 
 
 def jacobian(f: Any, u: np.ndarray, p: float) -> np.ndarray:
-    """By the complex step."""
+    """Return dF/du by complex steps."""
     columns = []
     for j in range(len(u)):
         shifted = u.astype(complex)
@@ -40,7 +40,7 @@ def jacobian(f: Any, u: np.ndarray, p: float) -> np.ndarray:
 
 
 def condition(kind: str, A: np.ndarray) -> float:
-    """What vanishes."""
+    """Return the function of the Jacobian that vanishes at a special point."""
     n = len(A)
     if kind == "det":
         return float(np.linalg.det(A))
@@ -56,7 +56,7 @@ def condition(kind: str, A: np.ndarray) -> float:
 
 
 def believed(kind: str, A: np.ndarray) -> bool:
-    """Whether a zero of the condition is a special point: no neutral saddle, and singular."""
+    """Whether a zero of the condition is a special point (and no neutral saddle)."""
     if kind == "hopf":
         values = np.linalg.eigvals(A)
         large = np.abs(values).max()
@@ -69,7 +69,7 @@ def believed(kind: str, A: np.ndarray) -> bool:
 
 
 def missing(demo: Demo, rows: list[dict[str, Any]]) -> dict[str, list[np.ndarray]]:
-    """Special points within the interval, and not far from those known, that are not in the table."""
+    """Return special points in the interval, and not far from the known ones, that are not in the table."""
     n, rng = len(demo.u), np.random.default_rng(0)
     f = demo.function if demo.kind == "flow" else lambda u, p: demo.function(u, p) - u
     known = [(row["kind"], row["value"], np.array(row["u"])) for row in rows if row["cycle"] == 1]

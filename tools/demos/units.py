@@ -1,9 +1,9 @@
-"""Writes units.json: the demos in other units, u, p and the rows of F times 1e-9 to 1e9.
+"""Write units.json with results of the demos in other units: u, p and the rows of F are multiplied by 1e-9 to 1e9.
 
     python -m tools.demos.units [NAME...]
 
-Prints what differs from table.json: a special point too many or too few, or a value by more than 1e-10 of itself (1e-12 of the interval
-next to zero). Nothing is said to the problem about its units. A map has rows in the units of its unknowns.
+Differences from table.json are printed: additional or missing special points, and values that differ by more than 1e-10 of themselves (near zero:
+1e-12 of the interval). The problem has no information on its units. The rows of a map have the units of its unknowns.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from .demo import NUMBERS, Demo
 from .make_table import TABLE, points_of
 
 UNITS = Path(__file__).with_name("units.json")
-# of unknowns, parameter, rows
+# factors of unknowns, parameter, rows
 SETS = [(1e9, 1e-9, 1e9), (1e-9, 1e9, 1e-9), (1e9, 1.0, 1.0), (1e-9, 1.0, 1.0)]
 
 
 def graph_in(demo: Demo, unit: float, of_parameter: float, of_rows: float) -> Any:
-    """The diagram of a demo in other units, with plain settings."""
+    """Compute the diagram of a demo in other units, with default settings."""
 
     def f(v: np.ndarray, q: Any) -> np.ndarray:
         rows = unit if demo.kind == "map" else of_rows
@@ -45,7 +45,7 @@ def graph_in(demo: Demo, unit: float, of_parameter: float, of_rows: float) -> An
 
 
 def differences(demo: Demo, rows: list[dict[str, Any]], units: tuple[float, float, float]) -> list[str]:
-    """What a diagram in other units has that the table has not, or lacks."""
+    """Return the differences between a diagram in other units and the table."""
     found = [(kind, value / units[1]) for kind, value, _ in points_of(graph_in(demo, *units))]
     width = demo.within[1] - demo.within[0]
     said = []
@@ -59,7 +59,7 @@ def differences(demo: Demo, rows: list[dict[str, Any]], units: tuple[float, floa
 
 
 def main(names: list[str]) -> None:
-    """All demos, or some."""
+    """Compare all demos, or some."""
     expected = json.loads(TABLE.read_text(encoding="utf-8"))
     demos = [*listed.DEMOS, *maps.DEMOS]
     table = json.loads(UNITS.read_text(encoding="utf-8")) if names else {}

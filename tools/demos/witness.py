@@ -1,11 +1,11 @@
-"""Special points of the demos solved in many digits, by their defining equations and nothing of the package's.
+"""Independent solution of the demos' special points in many digits, from their defining equations and without code of the package.
 
     fold, branch point   F = 0, det A = 0 with A = dF/du (for cycles d(f^n)/dx - 1); at a branch point, where this is singular,
                          F + b w = 0, A^T w = 0, F_p.w = 0, w.w = 1 (Moore and Spence 1980; b = 0 in the end)
     Hopf                 F = 0, the last but one Hurwitz determinant of A's characteristic polynomial = 0
     period doubling      f^n = x, det(M + 1) = 0;  Neimark-Sacker: det M = 1 (two unknowns), p(-c) = 0 (three)
 
-The characteristic polynomial is that of Faddeev and LeVerrier, derivatives are mpmath's.
+The characteristic polynomial is computed by the method of Faddeev and LeVerrier, derivatives by mpmath.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ import numpy as np
 from .demo import MANY_DIGITS, Demo
 
 DIGITS = 30
-SMALL = 8  # unknowns up to which points are solved in many digits
+SMALL = 8  # largest number of unknowns for which points are solved in many digits
 SINGULAR = ("branch-point", "symmetry-breaking")
 
 
 def polynomial(matrix: Any) -> list[Any]:
-    """Coefficients of det(x - A), highest first."""
+    """Return the coefficients of det(x - A), highest first."""
     n = matrix.rows
     coefficients, power = [mp.mpf(1)], mp.eye(n)
     for k in range(1, n + 1):
@@ -34,7 +34,7 @@ def polynomial(matrix: Any) -> list[Any]:
 
 
 def hurwitz(c: list[Any]) -> Any:
-    """The last but one Hurwitz determinant: zero where two eigenvalues have the sum zero."""
+    """Return the last but one Hurwitz determinant, which vanishes if two eigenvalues have the sum zero."""
     n = len(c) - 1
     if n == 2:
         return c[1]
@@ -46,7 +46,7 @@ def hurwitz(c: list[Any]) -> Any:
 
 
 def equations(demo: Demo, cycle: int, m: Any = MANY_DIGITS) -> Any:
-    """F of (u, p): the equations, or f^n(x) - x."""
+    """Return F as a function of (u, p): the equations, or f^n(x) - x."""
     if demo.kind == "flow":
         return lambda u, p: demo.equations(u, p, m)
 
@@ -75,7 +75,7 @@ def jacobian(f: Any, u: list[Any], p: Any) -> Any:
 
 
 def condition(kind: str, demo: Demo, matrix: Any) -> Any:
-    """What vanishes at a special point, from the Jacobian of F."""
+    """Return the function of the Jacobian of F that vanishes at a special point."""
     n = matrix.rows
     if kind == "period-doubling":
         return mp.det(matrix + 2 * mp.eye(n))
@@ -86,7 +86,7 @@ def condition(kind: str, demo: Demo, matrix: Any) -> Any:
 
 
 def solve(demo: Demo, kind: str, u: list[float], p: float, cycle: int = 1) -> tuple[list[Any], Any]:
-    """(u, p) of a special point near a guess.
+    """Solve for a special point near a guess; return (u, p).
 
     Raises
     ------
@@ -113,7 +113,7 @@ def solve(demo: Demo, kind: str, u: list[float], p: float, cycle: int = 1) -> tu
 
 
 def _left(f: Any, z: list[Any]) -> list[Any]:
-    """0 and a left null vector of the Jacobian."""
+    """Return start values of b and w: 0 and a left null vector of the Jacobian."""
     matrix = jacobian(f, z[:-1], z[-1])
     n = matrix.rows
     w = mp.matrix([mp.mpf(1) / (k + 2) for k in range(n)])
@@ -145,9 +145,9 @@ def _slope(f: Any, u: list[Any], p: Any) -> list[Any]:
 
 
 def turning(demo: Demo, u: list[float], p: float) -> tuple[float, list[float]]:
-    """(p, u) of a fold of many unknowns: where p, as a function of the middle one, is stationary.
+    """Return (p, u) of a fold with many unknowns, at which p is stationary as a function of the middle unknown.
 
-    Solved by Newton's method with that unknown held, and a parabola through three points that close in.
+    Newton's method solves the equations with this unknown fixed; a parabola through three points that approach each other locates the fold.
     """
     middle = len(u) // 2
 
