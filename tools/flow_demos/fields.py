@@ -1,4 +1,4 @@
-"""Right-hand sides of demos with cycles that the demos of equilibria do not have; (u, p, m) as there, of forced flows (u, p, t, m)."""
+"""Right-hand sides of demos with cycles that `tools.demos` does not contain; functions of (u, p, m) as there, for forced flows of (u, p, t, m)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def tor_matcont(u, nu, m, a3=0.32858, b3=0.93358, epsilon=0.001):
-    """Its own points (0.00125003, -0.001, 0.000525025) at nu = -0.9 say where epsilon stands."""
+    """The position of epsilon follows from the source's point (0.00125003, -0.001, 0.000525025) at nu = -0.9."""
     x, y, z = u
     cube = b3 * (y - x) ** 3
     return [(-(0.5 + nu) * x + 0.5 * y - a3 * x**3 + cube) / 0.6, 0.5 * x + 0.1 * y - z - cube, y + epsilon]
@@ -23,7 +23,7 @@ def plp_isola(u, rho, m, s0=111.0):
 
 
 def second_derivatives(n):
-    """Second derivatives at n Chebyshev points of [0, 1] of the polynomial through these and both ends: (n, n + 2)."""
+    """Return the matrix (n, n + 2) of second derivatives at n Chebyshev points of [0, 1], of the polynomial through these and both ends."""
     inner = (1 + np.cos((2 * np.arange(1, n + 1) - 1) * np.pi / (2 * n))) / 2
     x = np.concatenate([[0.0], inner, [1.0]])
     coefficients = np.linalg.inv(np.vander(x, increasing=True))
@@ -48,7 +48,7 @@ def frc(u, beta, t, m):
 
 
 def pen(u, current, m):
-    """Two coupled pendula: cosine and sine of the mean angle, drawn back to the circle, the angle between them, two rates."""
+    """Two coupled pendula; states: cosine and sine of the mean angle (attracted to the unit circle), the difference angle, two rates."""
     c, s, apart, w1, w2 = u
     half_c, half_s = m.cos(apart / 2), m.sin(apart / 2)
     mean, back = (w1 + w2) / 2, 1 - c**2 - s**2
@@ -62,7 +62,7 @@ def pen(u, current, m):
 
 
 def wave(u, a0, m, speed=0.05):
-    """Waves of the reaction of wav, with diffusion 1 and 5: states, and their slopes."""
+    """Travelling waves of the reaction of wav with diffusion 1 and 5; unknowns are the states and their slopes."""
     s, a, ds, da = u
     r = a / (3.4 + a) * s / (1 + s + 0.023 * s * s)
     f = -3 * (210 * r - (145 - s)), -3 * (210 * r - 0.2 * (a0 - a))

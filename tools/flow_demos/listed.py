@@ -1,4 +1,4 @@
-"""Demos of other packages that have cycles: where each begins, how far it is followed, and what is printed of it."""
+"""The list of demos with cycles from other packages, with start, interval and printed results of each."""
 
 from __future__ import annotations
 
@@ -24,17 +24,19 @@ class CycleDemo:
     ----------
     name, source, parameter : str
     equations : callable
-        (u, p, m) -> rates, of forced flows (u, p, t, m); for arrays.
+        (u, p, m) -> rates, for forced flows (u, p, t, m); also for arrays.
     u, p : start
+        State and parameter.
     within : (float, float)
+        Interval of the parameter.
     settles : bool
-        Whether it begins with the cycle on which a motion from ``u`` settles; else with an equilibrium.
+        Whether the first solution is the cycle on which a motion from ``u`` settles; else it is an equilibrium.
     period : callable, optional
-        Of the forcing, of the parameter.
+        Period of the forcing as a function of the parameter.
     exact : tuple of (kind, value)
         Values from closed forms.
     guess : callable, optional
-        () -> times and states near the first cycle, where no motion settles on it.
+        () -> times and states near the first cycle, if no motion settles on it.
     """
 
     name: str
@@ -53,18 +55,18 @@ class CycleDemo:
     guess: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
 
     def rates(self, x: Any, p: Any, *t: Any) -> list[Any]:
-        """Right-hand side."""
+        """Return the right-hand side."""
         return self.equations(x, p, *t, NUMBERS)
 
     def flow(self) -> cv.FlowProblem:
-        """The flow, at the start."""
+        """Return the flow at the start."""
         period = None if self.period is None else (lambda p, of=self.period: of(p))
         return cv.FlowProblem(
             self.rates, self.u, self.p, parameter=self.parameter, period=period, mirror=self.mirror
         )
 
     def graph(self) -> cv.Graph:
-        """Its diagram."""
+        """Compute the diagram."""
         flow = self.flow()
         seed: Any = flow
         if self.guess is not None:
@@ -119,7 +121,7 @@ PRINTED = {
     "neural mass": {"hopf": ["-1.85012460", "-1.15105934"]},
     "lorenz 84": {"hopf": ["1.61966", "2.46722", "2.85987"]},
 }
-"""What their sources print (AUTO-07p: its own run of the demo), by kind."""
+"""Name -> kind -> values that the source prints (for AUTO-07p: its run of the demo)."""
 
 TURN = np.diag([-1.0, -1.0, 1.0])
 ODD = -np.eye(3)
@@ -128,7 +130,7 @@ OTHER_PENDULUM = np.diag([1.0, 1.0, -1.0, 1.0, 1.0])[[0, 1, 2, 4, 3]]
 
 
 def still() -> tuple[np.ndarray, np.ndarray]:
-    """The equilibrium of frc that is forced, for a period at beta = 100."""
+    """Return times and states of the equilibrium of frc over a forcing period at beta = 100, as a guess of the forced cycle."""
     return np.linspace(0.0, 2 * np.pi / 100, 41), np.tile([0.5, 0.0], (41, 1))
 
 

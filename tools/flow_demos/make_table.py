@@ -1,4 +1,4 @@
-"""Writes table.json: the special points of every demo with cycles, ours and as the witness has them.
+"""Write table.json with the special points of every demo with cycles, by the package and by the independent solver (`witness.py`).
 
 python -m tools.flow_demos.make_table [NAME...]
 """
@@ -17,13 +17,13 @@ from . import witness
 from .listed import DEMOS, CycleDemo
 
 TABLE = Path(__file__).with_name("table.json")
-PATIENCE = 120.0  # seconds of processor time for the witness's solve of a point
+PATIENCE = 120.0  # most seconds of processor time for the independent solution of a point
 
 
 def points_of(graph: Any) -> list[Any]:
-    """The special points, ends of the interval left out, those of equilibria that are no Hopf points as well.
+    """Return the special points of cycles and the Hopf points, without ends of the interval.
 
-    Folds that rounding cannot tell from a period doubling are left out, too (`pen` has them 1.5e-15 apart).
+    Folds that cannot be separated from a period doubling in double precision are left out, too (`pen` has them 1.5e-15 apart).
     """
     found, doublings = [], graph.of_kind("period-doubling")
     for point in graph.special.values():
@@ -38,7 +38,7 @@ def points_of(graph: Any) -> list[Any]:
 
 
 def shooting_of(demo: CycleDemo, point: Any) -> witness.Shooting:
-    """The witness's equations, begun with states of our cycle."""
+    """Return the equations of the independent solver, with states of the package's cycle as guess."""
     orbit, turn = point.orbit, None
     if point.kind == "symmetry-breaking":
         mirror = np.asarray(demo.mirror, dtype=float)
@@ -57,14 +57,14 @@ def shooting_of(demo: CycleDemo, point: Any) -> witness.Shooting:
         )
         if found.growth() < witness.GROWTH:
             break
-    if point.kind == "symmetry-breaking" and turn is None:  # the trivial multiplier is +1, too
+    if point.kind == "symmetry-breaking" and turn is None:  # exclude the trivial multiplier, which is also +1
         signs, directions = np.linalg.eigh(np.asarray(demo.mirror, dtype=float))
         found.odd = directions[:, signs < 0.0]
     return found
 
 
 def solved(demo: CycleDemo, point: Any) -> float:
-    """The witness's value of a special point."""
+    """Return the independent value of a special point."""
     p = float(point.value)
     exact = [value for kind, value in demo.exact if kind == point.kind]
     if exact:
@@ -93,12 +93,12 @@ def solved(demo: CycleDemo, point: Any) -> float:
 
 
 def too_long(*_: Any) -> None:
-    """End a solve that takes too long."""
+    """Handle the time limit: end a solution that takes too long."""
     raise ValueError(f"not done in {PATIENCE:g} s")
 
 
 def rows_of(demo: CycleDemo, ours: bool) -> list[dict[str, Any]]:
-    """A row for each special point."""
+    """Return a row for each special point."""
     rows = []
     for point in points_of(demo.graph()):
         signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE)
@@ -128,7 +128,7 @@ def rows_of(demo: CycleDemo, ours: bool) -> list[dict[str, Any]]:
 
 
 def main(names: list[str]) -> None:
-    """Make the table anew, or the rows of some demos."""
+    """Write the whole table, or the rows of some demos."""
     signal.signal(signal.SIGVTALRM, too_long)
     ours, names = "--ours" in names, [name for name in names if name != "--ours"]
     for demo in DEMOS:

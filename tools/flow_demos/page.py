@@ -1,4 +1,4 @@
-"""The page docs/demos_cycles.md."""
+"""Text of the page docs/demos_cycles.md."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Not listed: what lies deeper than the stated depth. `tor` goes on to -0.9 with 1
 
 
 def cycles_page() -> str:
-    """The page."""
+    """Return the text of the page."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
     lines = [HEAD]
     for demo in DEMOS:

@@ -1,16 +1,16 @@
-"""Special points of cycles solved anew: multiple shooting by Taylor series (heyoka), Newton's method on an extended system.
+"""Independent solution of special points of cycles: multiple shooting by Taylor series (heyoka), Newton's method on an extended system.
 
     every cycle          x_(i+1) = flow over a part of the period from x_i, closed after the last part, a phase condition
-    fold                 the parameter's share of the null vector of the derivative of these equations vanishes
+    fold                 the parameter's component of the null vector of the derivative of these equations vanishes
     branch point         F(y) + b w = 0, A(y)^T w = 0, w.w = 1, A with one column more than rows (Moore 1980; b = 0 in the end)
     period doubling      an eigenvalue of the monodromy matrix is -1;  Neimark-Sacker: a pair has modulus 1
     symmetry breaking    half a period later the cycle is its mirror image: an eigenvalue of mirror times half the matrix is -1
-                         (+1, in the directions that the mirror turns round, where the cycle is its own mirror image at every instant)
+                         (+1, in the directions that the mirror reverses, if every point of the cycle is its own mirror image)
     Hopf                 an equilibrium with a pair of eigenvalues of real part zero
-    homoclinic           the unstable manifold of the saddle comes back to it
+    homoclinic           the unstable manifold of the saddle returns to it
 
-Nothing of the package's is used: simulations carry their derivatives by state and parameter, Newton's derivatives of the added condition are differences.
-Equilibria and homoclinic orbits: scipy. A Newton's method that does not converge is an error.
+No code of the package is used. Simulations include derivatives by state and parameter; the added condition is differentiated by finite
+differences. Equilibria and homoclinic orbits are computed with scipy. If Newton's method does not converge, an error is raised.
 """
 
 from __future__ import annotations
@@ -23,21 +23,23 @@ from scipy.integrate import solve_ivp
 
 from ..demos.demo import NUMBERS
 
-NEARS = (0.1, 0.5)  # of the size of an orbit: neighbourhoods of the saddle that it leaves and comes back to
-LONG = 3e3  # times in which it is left, or come back to
-GROWTH = 100.0  # of a perturbation in one part, where more parts can avoid it
-PARTS = (16, 32, 64)  # of a cycle
+# radii of neighbourhoods of the saddle that a homoclinic orbit leaves and enters, relative to its size
+NEARS = (0.1, 0.5)
+LONG = 3e3  # longest time until it leaves or enters such a neighbourhood
+GROWTH = 100.0  # largest growth of a perturbation in one part of a cycle, if more parts can avoid it
+PARTS = (16, 32, 64)  # numbers of parts of a cycle that are tried
+# last relative step of Newton's method: usual limit, and limit if rounding prevents smaller steps
 CONVERGED, STALLED = (
     1e-11,
     1e-8,
-)  # last step of Newton's method, relative; where rounding does not let it become smaller
-BROKEN = 1e-7  # singular value of the direction that breaks a symmetry, relative
-STEP = 1e-6  # relative, of differences of the period of the forcing
+)
+BROKEN = 1e-7  # relative singular value below which a direction is ignored at a symmetry breaking
+STEP = 1e-6  # relative step of finite differences of the forcing period
 TOLERANCE = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
 
 
 def _taylor(equations: Any, free: bool, start: np.ndarray) -> Any:
-    """An integrator of the states and of their derivatives by the first ones and the parameter."""
+    """Return an integrator of the states and of their derivatives by initial states and parameter."""
     x = [heyoka.expression(f"x{i}") for i in range(len(start))]
     p = heyoka.par[0]
     rates = equations(np.array(x), p, heyoka) if free else equations(np.array(x), p, heyoka.time, heyoka)
@@ -51,22 +53,23 @@ class Shooting:
     Parameters
     ----------
     equations : callable
-        (x, p, m) or (x, p, t, m) -> d numbers, m the functions.
+        (x, p, m) or (x, p, t, m) -> d numbers; m has the elementary functions.
     period : callable or None
-        Of the forcing, of p.
+        Forcing period as a function of p.
     edges : ndarray, shape (m + 1,)
-        Shares of the cycle (with ``turn``, of half of it) between which it is simulated: from 0 to 1.
+        Limits of the parts, relative to the cycle (with ``turn``, to half of it): from 0 to 1.
     states : ndarray, shape (m, d)
-        Guesses at the beginnings of these parts; the first fixes the phase.
+        Guesses at the beginnings of the parts; the first fixes the phase.
     unit : ndarray, shape (d,)
         Sizes of the states' motions.
     clock : float
         Period.
     p : float
+        Parameter.
     rounds : int
-        Periods of the forcing.
+        Number of forcing periods.
     turn : ndarray, shape (d, d), optional
-        The cycle is closed after half a period, by this mirror.
+        Mirror by which the cycle is closed after half a period.
     """
 
     def __init__(
@@ -82,8 +85,8 @@ class Shooting:
         turn: Any = None,
     ) -> None:
         self.period, self.edges, self.turn = period, edges, turn
-        self.periods = rounds * (1.0 if turn is None else 0.5)  # after which the cycle is closed
-        self.odd = np.eye(states.shape[1])  # directions of the multipliers that are asked for, as columns
+        self.periods = rounds * (1.0 if turn is None else 0.5)  # until the cycle closes
+        self.odd = np.eye(states.shape[1])  # basis (columns) of the directions whose multipliers are computed
         self.parts, self.d = states.shape
         self.free = period is None
         self.rates = lambda x, p, t: np.asarray(
@@ -97,7 +100,7 @@ class Shooting:
         self.start = np.concatenate([states.reshape(-1), own, [p]])
 
     def part(self, x: np.ndarray, p: float, start: float, stop: float) -> tuple[np.ndarray, np.ndarray]:
-        """State after a part, and its derivatives by the first one and by the parameter: (d,), (d, d + 1)."""
+        """Return the state after a part (d,), and its derivatives by the initial state and the parameter (d, d + 1)."""
         taylor, d = self.taylor, self.d
         taylor.time, taylor.pars[0] = start, p
         taylor.state[:] = np.concatenate([x, np.eye(d, d + 1).reshape(-1)])
@@ -106,7 +109,7 @@ class Shooting:
         return taylor.state[:d].copy(), taylor.state[d:].reshape(d, d + 1).copy()
 
     def cycle(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-        """Equations of a cycle, their derivative by all unknowns, and the parts' matrices."""
+        """Return the residuals of a cycle, their derivative by all unknowns, and the matrices of the parts."""
         m, d = self.parts, self.d
         states, p = y[: m * d].reshape(m, d), float(y[-1])
         times = self.edges * self.periods * (float(y[m * d]) if self.free else self.period(p))
@@ -140,24 +143,24 @@ class Shooting:
         return values, matrix, parts
 
     def growth(self) -> float:
-        """By how much a perturbation grows in one part at most, relative to the motions' sizes."""
+        """Largest growth of a perturbation in one part, relative to the sizes of the motions."""
         parts = self.cycle(self.start)[2]
         return max(float(np.linalg.norm(part * self.unit / self.unit[:, None], 2)) for part in parts)
 
     def monodromy(self, y: np.ndarray) -> np.ndarray:
-        """Matrix of the full period (with ``turn``, of half of it and the mirror)."""
+        """Return the monodromy matrix of the period (with ``turn``, of half of it and the mirror)."""
         product = np.eye(self.d)
         for part in self.cycle(y)[2]:
             product = part @ product
         return product
 
     def multipliers(self, y: np.ndarray) -> np.ndarray:
-        """Eigenvalues of it, in the directions that are asked for."""
+        """Return the eigenvalues of the monodromy matrix in the directions `odd`."""
         return np.linalg.eigvals(self.odd.T @ self.monodromy(y) @ self.odd)
 
 
 def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
-    """What vanishes: an eigenvalue next to ``at`` minus it, or its modulus minus one."""
+    """Return the condition of a special point: the eigenvalue nearest to ``at`` minus ``at``, or its modulus minus one."""
 
     def condition(y: np.ndarray) -> float:
         values = shooting.multipliers(y)
@@ -168,9 +171,9 @@ def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
 
 
 def newton(residual: Any, y: np.ndarray, scale: np.ndarray, least: float = 1e-14) -> np.ndarray:
-    """A root, by the chord method with derivatives by differences, which are renewed every fourth step.
+    """Find a root by the chord method, with derivatives by differences that are updated every fourth step.
 
-    Directions whose singular value is below ``least`` of the largest one are left alone.
+    Directions with singular values below ``least`` times the largest one are ignored.
 
     Raises
     ------
@@ -195,7 +198,7 @@ def newton(residual: Any, y: np.ndarray, scale: np.ndarray, least: float = 1e-14
 
 
 def solve(kind: str, shooting: Shooting, multiplier: complex = -1.0) -> np.ndarray:
-    """Unknowns of a special point: states, period, parameter."""
+    """Solve for a special point; return its unknowns: states, period, parameter."""
     y = shooting.start.copy()
     m, d = shooting.parts, shooting.d
     scale = np.concatenate([np.tile(shooting.unit, m), np.abs(y[m * d :]) + 1e-3])
@@ -224,13 +227,13 @@ def solve(kind: str, shooting: Shooting, multiplier: complex = -1.0) -> np.ndarr
     def both(z: np.ndarray) -> np.ndarray:
         return np.append(shooting.cycle(z)[0], condition(z))
 
-    # a cycle that is its own mirror image at every instant stays so: what breaks the symmetry is in the null space there
+    # if every point of the cycle is its own mirror image, the direction that breaks the symmetry is a null vector here
     alike = kind == "symmetry-breaking" and shooting.turn is None
     return newton(both, y, scale, BROKEN if alike else 1e-14)
 
 
 def hopf(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray, float]:
-    """An equilibrium with eigenvalues of real part zero."""
+    """Solve for an equilibrium with eigenvalues of real part zero; return state and parameter."""
     d = len(u)
 
     def residual(z: np.ndarray) -> np.ndarray:
@@ -245,7 +248,7 @@ def hopf(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray, float]:
 
 
 def fold_of_equilibria(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray, float]:
-    """An equilibrium with a singular Jacobian."""
+    """Solve for an equilibrium with a singular Jacobian; return state and parameter."""
     d = len(u)
 
     def residual(z: np.ndarray) -> np.ndarray:
@@ -259,13 +262,14 @@ def fold_of_equilibria(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray,
 
 
 class Homoclinic:
-    """The one-dimensional manifold of a saddle that comes back to it, forwards or, where the stable one is the line, backwards.
+    """Homoclinic orbit: the one-dimensional manifold of a saddle returns to it, forwards in time or (if it is the stable manifold) backwards.
 
     Parameters
     ----------
     rates : callable
+        (x, p) -> rates.
     states : ndarray, shape (n, d)
-        Of a cycle next to it, in order of time; the first is the slowest.
+        States of a nearby cycle in order of time; the first has the lowest speed.
     """
 
     def __init__(self, rates: Any, states: np.ndarray) -> None:
@@ -273,7 +277,7 @@ class Homoclinic:
         self.size = float(np.ptp(states, axis=0).max())
 
     def saddle(self, p: float, sign: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Place, direction of the line that leaves, normal of what comes back, number of unstable eigenvalues."""
+        """Return the saddle, the direction of its one-dimensional manifold, the normal of the other manifold, and the number of unstable eigenvalues."""
         x, d = self.states[0], self.states.shape[1]
         for _ in range(30):
             steps = x + 1e-30j * np.eye(d)
@@ -289,7 +293,10 @@ class Homoclinic:
         return x, np.real(vectors[:, k]), normal, int((values.real > 0.0).sum())
 
     def passes(self, p: float, sign: float, near: float) -> float:
-        """The side of the returning manifold on which the line passes the saddle when it is back, forwards (1) or backwards (-1) in time; 0 where it does not come."""
+        """Return on which side of the other manifold (+1 or -1) the one-dimensional manifold passes the saddle on its return; 0 if it does not return.
+
+        `sign` is the direction of time, 1 or -1.
+        """
         x, direction, normal, _ = self.saddle(p, sign)
         states = self.states if sign > 0.0 else np.roll(self.states[::-1], 1, axis=0)
         gone = states[int(np.argmax(np.linalg.norm(states - x, axis=1) > near * self.size))] - x
@@ -316,7 +323,7 @@ class Homoclinic:
         return float(np.sign((normal @ lead) * (normal @ (y - x))))
 
     def solve(self, p: float, width: float) -> float:
-        """The parameter, by bisection on the side on which the line passes the saddle."""
+        """Return the parameter by bisection on the result of `passes`."""
         _, _, _, unstable = self.saddle(p, 1.0)
         sign = 1.0 if unstable == 1 else -1.0
         for near in NEARS:

@@ -1,8 +1,8 @@
-"""A search for false results: machines drawn at random, their diagrams, and checks whose truth comes from elsewhere.
+"""Search for wrong results: diagrams of random machines are checked by independent computations.
 
     python -m tools.fuzz absorber 150 SALT [--finer] [--first SEED]
 
-Kinds of machines are those of :mod:`tools.fuzz.drawing`. The witnesses are the event-driven simulation, differences of its return
-map, w as a function of the phase, and the neighbours of a special point. A finding names the seed: the same kind, salt and seed draw the
-same machine again.
+Kinds of machines are those of :mod:`tools.fuzz.drawing`. Checks use the event-driven simulation, finite differences of its return
+map, w as a function of the phase, and orbits next to special points. A finding (a result that seems wrong) names the seed; the same kind, salt
+and seed draw the same machine again.
 """

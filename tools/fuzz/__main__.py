@@ -1,4 +1,4 @@
-"""``python -m tools.fuzz KIND COUNT SALT [--finer] [--first SEED]``: prints findings as they come, then totals."""
+"""``python -m tools.fuzz KIND COUNT SALT [--finer] [--first SEED]``: print each finding, then totals."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tools.fuzz.tally import Tally
 
 
 def main() -> int:
-    """Search; 1 if something was found."""
+    """Check all machines; return 1 if there are findings."""
     parser = argparse.ArgumentParser(prog="python -m tools.fuzz", description="Search for false results.")
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument("count", type=int, help="machines")

@@ -1,4 +1,4 @@
-"""Branches followed in many digits towards a special point, where nodes in doubles come no nearer."""
+"""Follow branches in many digits towards a special point, nearer than double precision allows."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from mpmath import mp
 
 from tools.fuzz.many_digits import DIGITS, Exact, Motion, solved
 
-LARGE = 1e14
-FASTER = 100.0  # the border is approached in steps after which multipliers are so many times as large ...
-GROWS = 10.0  # ... and at least so many times
-NEAR = 1e-8  # the border's motion is so near to those beside it; and in the parameter, relative ...
-PLACE = 1e-13  # ... beside the border's told error
-THERE = 1e-9  # nodes that are no further from those of a special point are there ...
-KNOWN = 1e-5  # ... or as near as that, where rounding, or the told error of the point's place, leaves it open
-TENTH, HALF = 0.1, 0.5  # of the distance that each step is to leave, and leaves at most
+LARGE = 1e14  # size above which a multiplier counts as unbounded
+FASTER = 100.0  # intended growth of multipliers in one step towards a border
+GROWS = 10.0  # smallest accepted growth
+NEAR = 1e-8  # largest difference of nodes between the last orbit and that of the border
+PLACE = 1e-13  # largest relative difference of the parameter, in addition to the stated error of the border
+THERE = 1e-9  # distance of nodes below which a special point is reached
+KNOWN = 1e-5  # the same at most, if rounding or the stated error of the point allows a larger distance
+TENTH, HALF = 0.1, 0.5  # intended and largest accepted ratio of distances after and before a step
 
 
 def grow_without_bound(one: Any, nearer: Any, error: float) -> bool:
-    """Whether multipliers of two orbits of a branch beside a border go on to grow, up to the border, until they are `LARGE`.
+    """Whether the multipliers of a branch grow without bound (to `LARGE`) towards a border.
 
-    Their inverses tend to zero as the distance or its square root does, and pass it: the multiplier that grows comes back from infinity
-    with the other sign. So the branch is followed, in many digits, to where the line through the last two orbits all but vanishes.
+    The inverse of the growing multiplier tends to zero like the distance from the border or its square root, and changes its sign there. So the
+    branch is followed in many digits towards the point at which the line through the inverses of the last two orbits vanishes.
 
     Parameters
     ----------
     one, nearer : Orbit
-        The second one is at the border but for rounding ...
+        Two orbits of the branch; the second one is at the border, to rounding and `error`.
     error : float
-        ... and for what the border's place is told to be wrong by.
+        Stated error of the border's parameter value.
     """
     with mp.workdps(DIGITS):
         motion = Motion(nearer)
@@ -46,15 +46,15 @@ def grow_without_bound(one: Any, nearer: Any, error: float) -> bool:
         if before is None or here is None:
             return False
         moved = max(abs(x - y) for row, own in zip(here.nodes, nearer.nodes) for x, y in zip(row, own))
-        # the motion changes by so much where the border may be
+        # the motion changes by `steepness * error` within the stated error of the border
         near = max(NEAR, min(KNOWN, here.steepness * error))
         return bool(moved < near and abs(here.value - value) < PLACE * max(1.0, abs(float(value))) + error)
 
 
 def _nearer(motion: Motion, before: Exact, here: Exact) -> Exact | None:
-    """An orbit of multipliers that are `FASTER` times as large, if the line says where; None if they are not even `GROWS` times so.
+    """Return the next orbit on the line through two orbits, with multipliers about `FASTER` times as large; None if they grow less than `GROWS` times.
 
-    On the other side of infinity they may be smaller: so far the line had been bent.
+    If the line overshoots the border, multipliers may be smaller, with the opposite sign.
     """
     one, other = 1 / mp.mpf(_largest(before)), 1 / mp.mpf(_largest(here))
     if one == other:
@@ -68,10 +68,10 @@ def _nearer(motion: Motion, before: Exact, here: Exact) -> Exact | None:
 
 
 def comes_to(one: Any, nearer: Any, end: Any, error: float = 0.0) -> bool:
-    """Whether a branch through two orbits goes on to the nodes of a third one: along the line through the last two, solved each time.
+    """Whether the branch through two orbits leads to the nodes of a third one; each step is predicted along the line through the last two orbits and solved.
 
-    Beside a branch point the equations are the more singular the nearer it is: what solves them in doubles stops short of it, or is of
-    the other branch. Of that, of repeated shorter orbits, the first two must not be.
+    Near a branch point the equations are nearly singular, so an orbit solved in double precision may miss the point or belong to the other
+    branch. The first two orbits must not be repetitions of shorter ones.
     """
     if not nearer.impacts:
         return False
@@ -103,19 +103,19 @@ def comes_to(one: Any, nearer: Any, end: Any, error: float = 0.0) -> bool:
 
 
 def _further(motion: Motion, before: Exact, here: Exact, share: Any) -> Exact | None:
-    """The orbit beyond the second one by so much of the way from the first one to it."""
+    """Return the orbit beyond the second one, at `share` times the distance between both."""
     guess = [[x + share * (x - y) for x, y in zip(*rows)] for rows in zip(here.nodes, before.nodes)]
     return solved(motion, guess, here.value + share * (here.value - before.value))
 
 
 def _opened(found: Exact) -> float:
-    """By how much an orbit in doubles may miss its own beginning after a period."""
+    """Distance by which an orbit in double precision may fail to close."""
     size = max(abs(float(x)) for row in found.nodes for x in row)
     return min(KNOWN, float(np.spacing(size)) * _growth(found))
 
 
 def _largest(found: Exact) -> float:
-    """The multiplier of largest modulus; of a pair the modulus."""
+    """Multiplier of largest modulus; for a pair its modulus."""
     largest = found.multipliers[int(np.abs(found.multipliers).argmax())]
     return float(abs(largest) if largest.imag else largest.real)
 

@@ -1,4 +1,4 @@
-"""Orbits between the points of a branch, which the diagram itself has never looked at."""
+"""Orbits between the points of a branch, which the diagram has not computed."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from contvines.bifurcation.locate import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 
-FAR = 1e-2  # in the metric of the continuation, in which the interval has length 1
+FAR = 1e-2  # largest distance from a point, in the metric of the continuation (the interval has length 1)
 
 
 class Between:
-    """Any point of a branch.
+    """Access to orbits between the points of a branch.
 
     Parameters
     ----------
     branch : Branch
     within : (float, float)
-        Interval of the diagram.
+        Interval of the parameter.
     """
 
     def __init__(self, branch: Any, within: tuple[float, float]) -> None:
@@ -29,7 +29,7 @@ class Between:
         self.engine = Engine(branch.problem, within, Settings())
 
     def segment(self, i: int, towards: int = 1) -> Segment:
-        """From point i to the next one (or the one before, for -1)."""
+        """Return the segment from point i to the next one (for -1: to the one before)."""
         branch, engine = self.branch, self.engine
         ends = (
             Solved(
@@ -46,12 +46,12 @@ class Between:
         return Segment(engine, *ends)
 
     def orbit(self, i: int, share: float) -> Any:
-        """The orbit at a share of the way from point i to the next; None where it cannot be solved for."""
+        """Return the orbit at a share of the way from point i to the next; None if the equations are not solved."""
         found = self.segment(i).at(share)
         return None if found is None else self.branch.problem.orbit(found.u, found.p)
 
     def beside(self, i: int, towards: int, parts: tuple[float, ...]) -> Iterator[tuple[float, Any]]:
-        """Distances from point i, parts of `FAR` or of the way to the next point where that is shorter, and the orbits there."""
+        """Yield distances from point i and the orbits there; distances are `parts` of `FAR`, or of the way to the next point if this is shorter."""
         segment = self.segment(i, towards)
         if not segment.length > 0.0:
             return
@@ -62,5 +62,5 @@ class Between:
                 yield part * far, self.branch.problem.orbit(found.u, found.p)
 
     def ways(self, i: int) -> list[int]:
-        """Directions in which the branch goes on from point i."""
+        """Return the directions in which the branch continues from point i."""
         return [way for way in (-1, 1) if 0 <= i + way < len(self.branch)]

@@ -1,4 +1,4 @@
-"""Machines at random, each with an orbit to begin with: ranges of the other tests, strong friction and small restitution."""
+"""Random machines with a first orbit; their parameters include strong friction and small restitution."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ MASS_RATIOS = {
     "absorber": (0.0, 0.006, 0.05),
     "cavity": (0.0, 0.006, 0.05),
     "coupled": (0.002, 0.006, 0.05, 0.3),
-    "level": (0.0, 0.006, 0.05),  # a level cavity, alike but for the distances of its walls
+    "level": (0.0, 0.006, 0.05),  # a level cavity that is symmetric except for the distances of its walls
 }
 KINDS = tuple(MASS_RATIOS)
-TRIES = 4  # starts from which a periodic motion is looked for
-CLOSED_FORM, AT_REST = 0.15, 0.1  # parts of the diagrams that begin with one
+TRIES = 4  # random starts from which a periodic motion is sought
+# shares of diagrams that begin with a closed form, and with the absorber at rest
+CLOSED_FORM, AT_REST = 0.15, 0.1
 
 
 class Draw(NamedTuple):
-    """A machine, the values at which it was started, an orbit (None: no periodic motion was met) and options of the diagram."""
+    """A machine, parameter values of its first orbit, this orbit (None: no periodic motion was found) and options of the diagram."""
 
     machine: Any
     parameters: dict[str, float]
@@ -31,7 +32,7 @@ class Draw(NamedTuple):
 
 
 def draw(kind: str, salt: int, seed: int) -> Draw:
-    """The machine of a seed."""
+    """Draw the machine of a seed."""
     rng = np.random.default_rng([salt, KINDS.index(kind), seed])
     machine = _machine(kind, rng)
     if kind == "coupled":
@@ -102,7 +103,7 @@ def _machine(kind: str, rng: np.random.Generator) -> Any:
 
 def _coupled(machine: Any, rng: np.random.Generator) -> Draw:
     over = "frequency" if rng.random() < 0.67 else "forcing"
-    width = 0.3 * np.sqrt(machine.mass_ratio)  # of the resonance, roughly
+    width = 0.3 * np.sqrt(machine.mass_ratio)  # approximate width of the resonance
     reach, middle = (width if over == "frequency" else 1.0), float(getattr(machine, over))
     for _ in range(TRIES):
         orbit = _first(machine, {}, rng)
@@ -113,7 +114,7 @@ def _coupled(machine: Any, rng: np.random.Generator) -> Draw:
 
 
 def _first(machine: Any, parameters: dict[str, float], rng: np.random.Generator) -> Any:
-    """A closed form, the absorber at rest, or what a simulation from a random start settles on."""
+    """Return a first orbit: a closed form, the absorber at rest, or the motion on which a simulation from a random start settles."""
     way = rng.random()
     if way < AT_REST or (way < AT_REST + CLOSED_FORM and not isinstance(machine, Absorber)):
         orbit = _at_rest(machine, parameters)
@@ -133,7 +134,7 @@ def _first(machine: Any, parameters: dict[str, float], rng: np.random.Generator)
     if found.kind == "stuck":
         return _at_rest(machine, parameters)
     if found.word is None or not len(found.word):
-        return None  # chaos, impacts that pile up, or free motion off the walls
+        return None  # chaos, accumulating impacts, or free motion without impacts
     return polish(found.orbit)
 
 

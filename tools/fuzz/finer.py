@@ -1,4 +1,4 @@
-"""The diagram once more, with finer steps and in a wider interval: the same special points."""
+"""Compare a diagram with those computed with finer steps and in a wider interval; special points must be the same."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from tools.fuzz.drawing import Draw
 from tools.fuzz.tally import Tally
 
 SETTINGS = {"max_step": 0.007, "angle": 0.04}
-NEAR = 1e-7  # values of one special point
-RIM = 1e-3  # part of the interval at its ends where a branch may or may not reach a point
+NEAR = 1e-7  # largest difference of values of one special point
+RIM = 1e-3  # margin at the ends of the interval in which points may be missing, relative to the interval
 
 
 def judge(draw: Draw, graph: Any, tally: Tally, limits: dict[str, Any]) -> None:
-    """Both comparisons; a diagram that was cut short says nothing."""
+    """Do both comparisons; incomplete diagrams are not compared."""
     if not graph.finished or not graph.complete:
         return
     low, high = draw.options["within"]
@@ -32,7 +32,7 @@ def judge(draw: Draw, graph: Any, tally: Tally, limits: dict[str, Any]) -> None:
 
 
 def compare(one: Any, other: Any, within: tuple[float, float], where: str, tally: Tally) -> None:
-    """Points of one graph that the other has not."""
+    """Report special points of one graph that are missing in the other."""
     rim = RIM * (within[1] - within[0])
     theirs = [(p.kind, p.real, p.value) for p in other.special.values()]
     for point in one.special.values():

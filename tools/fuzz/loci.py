@@ -1,6 +1,6 @@
-"""Loci of drawn machines against diagrams: ``python -m tools.fuzz.loci KIND COUNT SALT [--first SEED]``.
+"""Compare loci of random machines with diagrams: ``python -m tools.fuzz.loci KIND COUNT SALT [--first SEED]``.
 
-At places of a locus a diagram is begun from its motion: it must have the special point there, at the same value of the parameter.
+At some points of a locus a diagram begins with the orbit of the locus; it must contain the special point at the same value of the parameter.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ RANGES = {
     "damping": (0.1, 3.0),
     "forcing": (0.3, 6.0),
 }
-"""Second parameters, and how far they may go."""
-REACH = 0.2  # part by which they vary
+"""Second parameter -> its possible range."""
+REACH = 0.2  # largest relative change of the second parameter
 BORDERS = (
     "wall-graze",
     "velocity-graze",
     "stick",
     "vanishing-event",
-)  # one border has another name from each of its sides
+)  # a border may have a different kind from its other side
 FOLLOWED = ("fold", "branch-point", "period-doubling", "symmetry-breaking", "neimark-sacker", *BORDERS)
-POINTS, PLACES = 3, 2  # special points of each diagram, and places of each locus
-WIDTH = 0.05  # of the interval of a diagram, relative to its middle
-AGREE = 1e-6  # difference of values of the parameter
+POINTS, PLACES = 3, 2  # special points per diagram, and points per locus that are checked
+WIDTH = 0.05  # width of the interval of a diagram, relative to its middle
+AGREE = 1e-6  # largest difference of parameter values
 
 
 def second_parameter(
     orbit: Any, over: str, rng: np.random.Generator
 ) -> tuple[str, tuple[float, float]] | None:
-    """A second parameter and its interval; None if there is none that may vary."""
+    """Choose a second parameter and its interval; None if no parameter can vary."""
     known = orbit.parameters
     names = [name for name in RANGES if name != over and known.get(name, 0.0) != 0.0]
     if not names:
@@ -51,7 +51,7 @@ def second_parameter(
 
 
 def judge(kind: str, salt: int, seed: int, done: Counter[str]) -> list[str]:
-    """What is found to be false for the machine of a seed; what was tried is counted."""
+    """Check the machine of a seed; return findings, and count the checks in `done`."""
     drawn, found = draw(kind, salt, seed), []
     if drawn.orbit is None:
         return []
@@ -69,11 +69,11 @@ def judge(kind: str, salt: int, seed: int, done: Counter[str]) -> list[str]:
         except ValueError as error:
             print(
                 f"{where}: {error}", flush=True
-            )  # where more vanishes at once than the equations of a locus tell apart
+            )  # degenerate points, at which the equations of a locus are singular
             done["not started"] += 1
             continue
         done["loci"] += 1
-        inner = len(locus) - 2  # at an end there is a border, say, at which other points are not told
+        inner = len(locus) - 2  # leave out the ends, where a border, for example, may hide other points
         for i in (
             (1 + rng.choice(inner, size=min(PLACES, inner), replace=False)).tolist() if inner > 0 else ()
         ):
@@ -91,7 +91,7 @@ def judge(kind: str, salt: int, seed: int, done: Counter[str]) -> list[str]:
 
 
 def main() -> int:
-    """Search; 1 if something was found."""
+    """Check all machines; return 1 if there are findings."""
     parser = argparse.ArgumentParser(prog="python -m tools.fuzz.loci", description="Search for false loci.")
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument("count", type=int, help="machines")

@@ -1,7 +1,7 @@
-"""Orbits and multipliers in many digits, from the equations of motion written anew: the last word where floating point decides nothing.
+"""Independent computation of orbits and multipliers in many digits, for cases that double precision cannot decide.
 
-Between events every machine has a closed form in each mode; the next event is found by Newton's method on time. Derivatives of the maps
-from event to event are central differences in many digits. No code of the package is used but the word, and nodes to start from.
+Between events every machine has a closed form in each mode; Newton's method solves for the time of the next event. Derivatives of the maps
+from event to event are central differences in many digits. Only the word and the start values of nodes come from the package.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Shaken:
         return [psi, w, rate + speed * (mp.cos(psi) - mp.cos(first)) + pulled]
 
     def event(self, code: int, after: int, state: list[Any]) -> Any:
-        """What vanishes when an event happens; after a slip friction pulls as it will while sliding."""
+        """Return the function that vanishes at an event; at a slip, friction acts in the direction of the following sliding (mode `after`)."""
         if code in self.wall:
             return state[1] - self.wall[code]
         if code == SLIP:
@@ -93,7 +93,7 @@ class Damped:
         """The state some time later."""
         first, q1, q1_rate, q2, q2_rate = state
         psi, turn = first + self.omega * time, 1j * self.omega
-        mass = 1 + self.eps if mode == 0 else mpf(1)  # stuck, both move as one
+        mass = 1 + self.eps if mode == 0 else mpf(1)  # while sticking, both masses move as one
         answer = self.shaking / (1 + self.drag * turn + mass * turn**2)
         constant = -self.eps * self.friction * mode
 
@@ -114,7 +114,7 @@ class Damped:
         return [psi, new, new_rate, q2 + (q2_rate + pulled / 2) * time, q2_rate + pulled]
 
     def event(self, code: int, after: int, state: list[Any]) -> Any:
-        """What vanishes when an event happens; friction gives way where both bodies' acceleration asks for more than it has."""
+        """Return the function that vanishes at an event; at a slip, the force needed for the common acceleration equals the largest friction."""
         psi, q1, q1_rate, q2, q2_rate = state
         if code in self.wall:
             return q1 - q2 - self.wall[code]
@@ -132,9 +132,8 @@ class Damped:
 
 
 class Exact(NamedTuple):
-    """An orbit in many digits: how far the parameter and the nodes are from those claimed, its multipliers, dnode/dparameter, and
-
-    the nodes and the parameter themselves.
+    """An orbit in many digits: differences of parameter and nodes from the given ones, multipliers, dnode/dparameter,
+    nodes and parameter.
     """
 
     shift: float
@@ -156,21 +155,21 @@ class Motion:
         self.kind = Damped if "damping" in self.given else Shaken
 
     def machine(self, value: Any) -> Any:
-        """The machine at a value of the parameter."""
+        """Return the machine at a value of the parameter."""
         return self.kind({**self.given, self.parameter: value})
 
     def step(self, machine: Any, i: int, node: list[Any], time: Any) -> tuple[Any, list[Any]]:
-        """What vanishes at the event after event i, and the rest of its node, if it comes so much later."""
+        """Return the event function of the event after event i and the rest of its node, if it happens `time` later."""
         j = (i + 1) % len(self.codes)
         state = machine.flow(self.modes[i], machine.state(self.codes[i], node), time)
         return machine.event(self.codes[j], self.modes[j], state), machine.node(self.codes[j], state)[1:]
 
 
 def exact(orbit: Any) -> Exact | None:
-    """The orbit next to a claimed one, the parameter let go: what is sought is square to the branch through it.
+    """Solve for the orbit next to a given one, with the parameter as an unknown; the correction is orthogonal to the branch.
 
-    At a fixed value of the parameter the orbit may be ill conditioned, in windows narrower than rounding it may not be there at all.
-    None for motions without impacts, which may be moved as a whole, and where Newton's method does not converge.
+    At a fixed value of the parameter the orbit may be ill-conditioned, or not exist in windows that are narrower than rounding.
+    Return None for motions without impacts, whose position is free, and if Newton's method does not converge.
     """
     if not orbit.impacts:
         return None
@@ -183,9 +182,9 @@ def exact(orbit: Any) -> Exact | None:
 
 
 def rounds_apart(orbit: Any, periods: int) -> float:
-    """How far in phase the impacts of an orbit are from those so many forcing periods later, in many digits; inf where they are other ones.
+    """Largest phase difference between the impacts of an orbit and those `periods` forcing periods later, in many digits.
 
-    Nothing but rounding (of 80 digits) where the orbit repeats a shorter one; nan where it cannot be solved.
+    Zero to rounding (of 80 digits) if the orbit repeats a shorter one; inf if the walls differ; nan if the orbit is not solved.
     """
     found = exact(orbit)
     if found is None:
@@ -203,7 +202,7 @@ def rounds_apart(orbit: Any, periods: int) -> float:
 
 
 def solved(motion: Motion, claimed: Any, value: Any, sweeps: int = 12) -> Exact | None:
-    """The orbit next to claimed nodes at a value of the parameter, both of which may have many digits."""
+    """Solve for the orbit next to given nodes and parameter, both of which may have many digits; None without convergence."""
     start = [[mpf(x) for x in row] for row in claimed]
     size, first = len(start[0]), value
     nodes = [list(row) for row in start]
@@ -253,10 +252,10 @@ def solved(motion: Motion, claimed: Any, value: Any, sweeps: int = 12) -> Exact 
 
 
 def _linearised(motion: Motion, nodes: list[Any], value: Any) -> tuple[list[Any], list[Any], list[Any]]:
-    """Derivatives of the maps from event to event, those with respect to the parameter, and what the maps are off.
+    """Return derivatives of the maps from event to event, their derivatives by the parameter, and their residuals.
 
-    The time from event to event is that of the nodes, and corrected by one step of Newton's method: where an impact is so gentle that
-    the nodes at hand miss it, it need not be met before they are right.
+    The time between events is that of the nodes, corrected by one Newton step. So an impact of small speed, which inaccurate
+    nodes would miss, need not be located before the nodes are accurate.
     """
     small, size = mpf(10) ** (-mp.dps // 3), len(nodes[0])
     here, above, below = (motion.machine(value + part * small) for part in (0, 1, -1))
@@ -290,16 +289,16 @@ def _linearised(motion: Motion, nodes: list[Any], value: Any) -> tuple[list[Any]
 
 
 def _at_event(changes: tuple[Any, list[Any]], flow: tuple[Any, list[Any]]) -> list[Any]:
-    """By how much the event comes later, and by how much the rest of its node is another one when it comes.
+    """Return the change of the event's time, and the changes of the rest of its node at the event.
 
-    Both are had from changes of what vanishes and of the rest at a given time, and from how these go on with time (`flow`).
+    They follow from `changes` of the event function and of the node at a fixed time, and from their time derivatives (`flow`).
     """
     later = -changes[0] / flow[0]
     return [later, *(change + later * rate for change, rate in zip(changes[1], flow[1]))]
 
 
 def _null(system: Any) -> list[Any]:
-    """What a matrix with one more column than rows maps to zero: its minors."""
+    """Null vector of a matrix with one more column than rows, by its minors."""
     size = system.rows
     vector = []
     for left_out in range(size + 1):
@@ -315,7 +314,7 @@ def _null(system: Any) -> list[Any]:
 def _carried(
     vector: Any, maps: list[Any], pushes: list[Any], gaps: list[Any] | None
 ) -> tuple[list[Any], Any]:
-    """A change of the first node and of the parameter, carried to all nodes."""
+    """Map a change of the first node and of the parameter to all nodes."""
     size = maps[0].rows
     change, rows = mp.matrix(list(vector)[:size]), []
     for i, (A, q) in enumerate(zip(maps, pushes)):

@@ -1,4 +1,4 @@
-"""Motions compared as functions of time: w at equal phases, whatever words say."""
+"""Compare motions by w as a function of the phase, independently of their words."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 
 from orbits.orbit import PER_PERIOD
 
-BACKWARDS = -1e-6  # durations below: singular points of virtual branches are known to half their digits
-LONGEST = 64  # forcing periods over which motions are compared
+BACKWARDS = -1e-6  # a smaller duration counts as negative; durations at singular points of virtual branches have half the digits
+LONGEST = 64  # most forcing periods over which motions are compared
 
 
 def apart(one: Any, other: Any, *, images: bool = True) -> float:
-    """Largest difference in w between two orbits, in units of the machine's size.
+    """Largest difference in w between two orbits, relative to the machine's unit of length.
 
-    The smallest one over shifts by whole forcing periods and, with `images`, mirror images of a machine that has them. Motions without
-    impacts may be moved as a whole. nan for virtual orbits whose time runs backwards, and for very long ones.
+    The result is the smallest one over shifts by whole forcing periods and, with `images`, mirror images (if the machine has them). The
+    position of motions without impacts is free. nan for virtual orbits with negative durations, and for very long orbits.
     """
     if min(one.durations.min(initial=0.0), other.durations.min(initial=0.0)) < BACKWARDS:
         return math.nan
@@ -38,7 +38,7 @@ def apart(one: Any, other: Any, *, images: bool = True) -> float:
 
 
 def shortest(orbit: Any, near: float = 1e-7) -> int:
-    """Forcing periods after which w comes back, a divisor of the orbit's own."""
+    """Smallest number of forcing periods (a divisor of the orbit's) after which w repeats."""
     for periods in range(1, orbit.periods):
         if orbit.periods % periods == 0:
             track = orbit.positions(PER_PERIOD)[:, 0]
@@ -49,7 +49,7 @@ def shortest(orbit: Any, near: float = 1e-7) -> int:
 
 
 def alike(listed: np.ndarray, seen: np.ndarray) -> float:
-    """Largest difference of the characteristic polynomials, as a part of their largest coefficient; sets need no order."""
+    """Largest difference of the characteristic polynomials of two sets of multipliers, relative to their largest coefficient."""
     one, other = np.poly(listed), np.poly(seen)
     if one.shape != other.shape or not (np.isfinite(one).all() and np.isfinite(other).all()):
         return math.inf

@@ -1,4 +1,4 @@
-"""Special points and the orbits beside them: motions tend to that of the point, multipliers to those listed, and something crosses."""
+"""Check special points by orbits next to them: motions and multipliers tend to those of the point, and a multiplier or the parameter passes its critical value."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from tools.fuzz.many_digits import exact
 from tools.fuzz.motion import alike, apart, shortest
 from tools.fuzz.tally import Tally
 
-PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
-CLOSER = (1e-4, 1e-5)  # the same, where times of virtual orbits further away run backwards
-NEAR = 1e-7  # values of one point
-SAME = 1e-6  # motions that differ by less need not come nearer
-SHRINKS = 0.5  # a square root shrinks by 0.32 where the distance does tenfold
-NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # the same for multipliers
-NEAREST = (1e-6, 1e-7, 1e-8, 1e-9)  # ... where these do not tell: some grow until they are as near as that
-UNBOUNDED = 1e14  # multipliers listed as large grow without bound, or so far
-LIMIT = 1e-3  # relative difference of characteristic polynomials
-ROUNDED = 0.05  # difference of characteristic polynomials that rounding may make, where words are long
-UNRESOLVED = 1e-12  # differences of the parameter, relative, that are rounding
-ASIDE = 0.1  # of the distance, where crossings are looked for
+PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # relative distances at which motions are compared with that of the point
+CLOSER = (1e-4, 1e-5)  # further distances, if virtual orbits at larger ones have negative durations
+NEAR = 1e-7  # largest difference of values of one point
+SAME = 1e-6  # difference of motions below which they need not decrease further
+SHRINKS = 0.5  # largest ratio of differences for a tenth of the distance; for a square root it is 0.32
+NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # relative distances at which multipliers are compared
+NEAREST = (1e-6, 1e-7, 1e-8, 1e-9)  # further distances, if multipliers still change
+UNBOUNDED = 1e14  # listed multipliers above this size stand for unbounded ones
+LIMIT = 1e-3  # largest relative difference of characteristic polynomials
+ROUNDED = 0.05  # largest difference of characteristic polynomials due to rounding, for long words
+UNRESOLVED = 1e-12  # relative difference of the parameter below which values are equal to rounding
+ASIDE = 0.1  # relative distance at which both sides of a bifurcation are compared
 
-TURNING = 1e-3  # change of the parameter, along a tangent of length one, of a branch that turns
+TURNING = 1e-3  # largest parameter component of a unit tangent at a fold
 
 
 def judge(graph: Any, tally: Tally) -> None:
-    """Each mark of each branch."""
+    """Check each special point of each branch."""
     for branch in graph:
         between = Between(branch, graph.within)
         for i, label in branch.marks:
@@ -48,7 +48,7 @@ def judge(graph: Any, tally: Tally) -> None:
 
 
 def _joined(graph: Any, switch: Any, tally: Tally) -> None:
-    """Both branches of a switch carry the point, so that `_tends` has looked at both; or have its orbit at one of their own."""
+    """Check that both branches of a switch list the point (then `_tends` checks both), or have its orbit at another of their points."""
     tally.count("crossings")
     point = graph[switch.point]
     for end in (switch.source, switch.target):
@@ -71,7 +71,7 @@ def _joined(graph: Any, switch: Any, tally: Tally) -> None:
 
 
 def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
-    """The branch's orbits tend to the point's as the distance does."""
+    """Check that the branch's orbits tend to that of the point as their distance tends to zero."""
     branch = between.branch
     for way in between.ways(i):
         beside = list(between.beside(i, way, PARTS))
@@ -83,7 +83,7 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
             tally.count("ways to special points that cannot be followed")
             continue
         tally.count("ways to special points followed")
-        # the nearer to a branch point the more singular the equations: a motion that was that near does not come nearer
+        # near a branch point the equations are nearly singular, so the smallest difference counts instead of the last
         nearest = gaps[-1] if point.kind in BORDERS or point.kind == "fold" else float(np.nanmin(gaps))
         falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
@@ -99,7 +99,7 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
 
 
 def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
-    """Whether the branch of the furthest two orbits, in many digits, comes to the motion of the point; they repeat no shorter ones."""
+    """Whether the branch through the two most distant orbits leads to the motion of the point in many digits; they must not repeat shorter orbits."""
     return (
         len(beside) > 1
         and apart(end, point.orbit) < SAME
@@ -109,11 +109,8 @@ def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
 
 
 def _unresolved(point: Any) -> float:
-    """How far the motion of a special point goes while the parameter changes by as much as leaves open where it is, or by its last bit.
-
-    No branch is known to come nearer.
-    """
-    if point.kind == "fold":  # the parameter stands still there, and points are located in the motion
+    """Change of the motion while the parameter changes by the point's stated error or its last bit; smaller differences mean nothing."""
+    if point.kind == "fold":  # the parameter is stationary, and folds are located by the motion
         return 0.0
     along = np.asarray(point.tangent)
     rate = abs(float(along[-1])) / float(np.abs(along).max())
@@ -121,7 +118,7 @@ def _unresolved(point: Any) -> float:
 
 
 def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
-    """Multipliers listed at a border are the limits of those beside it, on this branch's side."""
+    """Check that the multipliers listed at a border are the limits of those of nearby orbits on this branch."""
     branch = between.branch
     ways = between.ways(i)
     if len(ways) != 1 or not branch.multipliers.shape[1] or not len(branch.problem.word):
@@ -172,14 +169,14 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
 
 
 def _tend_to(listed: np.ndarray, seen: list[tuple[float, np.ndarray]]) -> bool:
-    """Whether multipliers seen nearer and nearer to a border tend to those listed there."""
+    """Whether multipliers at decreasing distances from a border tend to the listed ones."""
     gaps = [alike(listed, m) for _, m in seen]
     nearest = gaps[-3:]
     return min(gaps) < LIMIT or (nearest[2] < SHRINKS * nearest[0] and nearest[2] < 0.1)
 
 
 def _within_rounding(listed: np.ndarray, beside: list[Any]) -> bool:
-    """Whether multipliers are off their limit, in many digits, by no more than those of orbits beside the border are off their own."""
+    """Whether the error of listed multipliers (against many digits) is not larger than the rounding error of multipliers of nearby orbits."""
     known = [(orbit, found) for orbit in beside if (found := exact(orbit)) is not None]
     if not known:
         return False
@@ -188,7 +185,7 @@ def _within_rounding(listed: np.ndarray, beside: list[Any]) -> bool:
 
 
 def _among(listed: np.ndarray, known: list[Any]) -> bool:
-    """Whether the characteristic polynomial lies between those of orbits that the border cannot be distinguished from."""
+    """Whether the characteristic polynomial lies between those of orbits that cannot be distinguished from the border."""
     if len(known) < 2:
         return False
     polynomials = np.array([np.poly(orbit.multipliers).real for orbit in known])
@@ -204,9 +201,10 @@ def _text(multipliers: np.ndarray) -> str:
 
 
 def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
-    """At a bifurcation a multiplier passes the circle, at a fold the parameter turns.
+    """Check that a multiplier crosses the unit circle at a bifurcation, and that the parameter turns at a fold.
 
-    Of real branches: equations of virtual orbits may be singular without, where a stick that forgets all before ends at a maximum.
+    Only for real branches: equations of virtual orbits may be singular without this, if a stick (whose end does not depend on its
+    beginning) ends at a maximum.
     """
     branch = between.branch
     sides = [next((orbit for _, orbit in between.beside(i, way, (ASIDE,))), None) for way in (-1, 1)]
@@ -215,7 +213,7 @@ def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
     if point.kind == "branch-point" and abs(point.tangent[-1]) < TURNING:
         tally.count(
             "branch points at which the parameter turns"
-        )  # a pitchfork on the branch that bends: 1 is touched
+        )  # the curved branch of a pitchfork: the multiplier only touches 1
         return
     tally.count("bifurcations with both sides")
     before, after = (_past(orbit.multipliers) for orbit in sides)
@@ -228,7 +226,7 @@ def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
 
 
 def _turns(between: Between, i: int, graph: Any, point: Any, tally: Tally) -> None:
-    """At a fold the parameter turns: both sides where it first differs by more than rounding, before the next fold."""
+    """Check that the parameter turns at a fold: compare the nearest orbits on both sides whose parameter differs by more than rounding, before the next fold."""
     if point.met_from is not None:
         return
     branch, gaps = between.branch, []
@@ -255,7 +253,7 @@ def _turns(between: Between, i: int, graph: Any, point: Any, tally: Tally) -> No
 
 
 def _past(multipliers: np.ndarray) -> tuple[int, int, int]:
-    """Multipliers past 1, past -1, and pairs past the circle."""
+    """Return the numbers of multipliers above 1, below -1, and in pairs outside the unit circle."""
     real = multipliers[multipliers.imag == 0.0].real
     pairs = multipliers[multipliers.imag > 0.0]
     return int((real > 1.0).sum()), int((real < -1.0).sum()), int((np.abs(pairs) > 1.0).sum())

@@ -1,4 +1,4 @@
-"""One machine judged by all checks, within its time."""
+"""Check one machine by all checks, with a time limit."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from tools.fuzz import finer, neighbours, simulated, structure
 from tools.fuzz.drawing import Draw, draw
 from tools.fuzz.tally import Tally
 
-SECONDS = 150.0  # of processor time for each part
+SECONDS = 150.0  # most processor time for each part
 LIMITS = {"max_branches": 80}
 
 
 class TooLong(BaseException):
-    """A part takes longer than its time."""
+    """A part exceeds its time limit."""
 
 
 @contextlib.contextmanager
 def within_seconds(seconds: float) -> Iterator[None]:
-    """Stop after so much processor time, where the system can."""
+    """Context manager: raise `TooLong` after this processor time, if the operating system supports it."""
     if not hasattr(signal, "SIGVTALRM"):
         yield
         return
@@ -44,7 +44,7 @@ def within_seconds(seconds: float) -> Iterator[None]:
 
 
 def search(kind: str, salt: int, seed: int, finely: bool = False) -> Tally:
-    """Draw a machine and judge it."""
+    """Draw a machine and check it; with `finely` also by finer diagrams."""
     tally = Tally(kind, salt, seed)
     tally.count("machines")
     rng = np.random.default_rng([salt, seed])

@@ -1,4 +1,4 @@
-"""Orbits of branches against the event-driven simulation: events, multipliers, and whether it comes back to stable ones."""
+"""Compare orbits of branches with the event-driven simulation: events, multipliers, and return to stable orbits."""
 
 from __future__ import annotations
 
@@ -17,26 +17,28 @@ from tools.fuzz.many_digits import exact
 from tools.fuzz.motion import alike, apart
 from tools.fuzz.tally import Tally
 
-EACH = 3  # orbits of each branch
-STARTS = 3  # of each machine
-BESIDE = 1e-6  # margins as small make events a matter of rounding
-WILD = 1e6  # multipliers as large are lost within a period
-DIFFERENCES = 1e-4  # of characteristic polynomials, relative
-EXACTLY = 1e-5  # of the same, in many digits
+EACH = 3  # orbits per branch that are checked
+STARTS = 3  # simulations per machine
+BESIDE = 1e-6  # margin below which rounding decides whether an event happens
+WILD = 1e6  # multiplier above which a simulation cannot follow an orbit for a period
+DIFFERENCES = 1e-4  # largest relative difference of characteristic polynomials
+EXACTLY = 1e-5  # the same, against multipliers in many digits
+# ROUGHLY: the same in stretches of the parameter that are relatively narrower than STEEP, in which multipliers change fast
 ROUGHLY, STEEP = (
     1e-3,
     1e-8,
-)  # ... in stretches as narrow, relative: multipliers run through the circle within them, and rounding moves these
-PARAMETER = 1e-10  # by which the orbit in many digits may be another machine's: rounding of phases, times what an event's map amplifies
-UNRESOLVED = 1e-12  # stretches of the parameter, relative, that floating point does not resolve
-NARROW = 1e-10  # stretches of the parameter, relative, in which a basin may be narrower than the displacement of a simulation
-SMALLER = (1e-7, 1e-9)  # displacements
-MOST = 4  # events from which a return map is taken
-SETTLED = 0.999  # outermost multiplier of what a simulation can settle on
+)
+PARAMETER = 1e-10  # largest difference of the parameter of the orbit in many digits, due to amplified rounding of phases
+UNRESOLVED = 1e-12  # relative width of stretches of the parameter that floating point does not resolve
+# relative width of stretches of the parameter in which a basin may be narrower than a displacement
+NARROW = 1e-10
+SMALLER = (1e-7, 1e-9)  # smaller displacements for finite differences
+MOST = 4  # events at which a return map begins
+SETTLED = 0.999  # largest modulus of multipliers of an orbit on which a simulation settles
 
 
 def judge(graph: Any, tally: Tally, rng: np.random.Generator) -> None:
-    """Orbits between the points of each branch."""
+    """Check orbits between the points of each branch."""
     for branch in graph:
         if len(branch) < 2 or not len(branch.problem.word):
             continue
@@ -71,7 +73,7 @@ def _said(label: str, orbit: Any) -> str:
 
 
 def _unsaid(graph: Any, branch: Any, i: int) -> bool:
-    """Whether points i and i + 1 lie between special points at which the graph says that stable orbits between them would not show."""
+    """Whether points i and i + 1 lie between special points whose notes state that stable orbits between them are not resolved."""
     places = [place for place, label in branch.marks if label in graph.special]
     before, after = ([k for k in places if k <= i], [k for k in places if k > i])
     if not before or not after:
@@ -88,7 +90,7 @@ def _unsaid(graph: Any, branch: Any, i: int) -> bool:
 
 
 def _stretch(branch: Any, i: int) -> float:
-    """Relative width in the parameter of the stretch between two changes of stability in which point i and the next one lie."""
+    """Relative width in the parameter of the stretch between two changes of stability that contains point i and the next one."""
     changes = np.flatnonzero(branch.stable[1:] != branch.stable[:-1])
     first = int(changes[changes < i].max(initial=-1)) + 1
     last = int(changes[changes > i].min(initial=len(branch) - 1))
@@ -97,10 +99,10 @@ def _stretch(branch: Any, i: int) -> float:
 
 
 def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: float = np.inf) -> None:
-    """A real orbit: the simulation goes through its events, has its multipliers, and comes back if it is said to be stable.
+    """Check a real orbit: the simulation has its events and multipliers, and returns to it if it is stable.
 
-    Where it is stable in a stretch of the parameter (of relative `width`) that floating point does not resolve, a simulation is that of
-    another machine, which need not have a stable orbit: multipliers in many digits say then what is true.
+    If the orbit is stable only in a stretch of the parameter (of relative `width`) that floating point does not resolve, the simulation is
+    not reliable; then multipliers in many digits decide.
     """
     growth = float(np.abs(orbit.multipliers).max(initial=0.0))
     said = _said(label, orbit)
@@ -150,9 +152,9 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: flo
 
 
 def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally, width: float = np.inf) -> np.ndarray:
-    """Multipliers against differences; where the return map is steep, and so curved within a displacement, against smaller ones.
+    """Compare multipliers with finite differences of the return map; return the reliable ones.
 
-    Where these cannot tell either, against those of the orbit in many digits. Returns the multipliers that are to be believed.
+    If the return map is steep, and so nonlinear within a displacement, smaller displacements are used, and finally the orbit in many digits.
     """
     tally.count("multipliers against differences")
     gap = alike(orbit.multipliers, seen)
@@ -179,7 +181,7 @@ def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally, width: floa
 
 
 def in_many_digits(orbit: Any, exactly: float = EXACTLY) -> bool:
-    """Whether the orbit, solved for in many digits, has these multipliers, at the same parameters but for rounding."""
+    """Whether the orbit solved in many digits has the same multipliers and, to rounding, the same parameter."""
     found = exact(orbit)
     return (
         found is not None
@@ -189,9 +191,9 @@ def in_many_digits(orbit: Any, exactly: float = EXACTLY) -> bool:
 
 
 def _as_narrow(orbit: Any, width: float) -> bool:
-    """Whether the orbit in many digits, at the same parameter but for rounding and a tenth of the stretch's width, has these multipliers.
+    """Whether the orbit in many digits has the same multipliers, with a parameter that is equal to rounding and a tenth of the stretch's width.
 
-    They run from 1 to -1 over the width, so that a shift of the parameter, or its last bit, moves them by its part of the width.
+    Multipliers change from 1 to -1 over the width, so a shift of the parameter changes them in proportion to shift over width.
     """
     found = exact(orbit)
     if found is None or abs(found.shift) > 0.1 * width:
@@ -201,7 +203,7 @@ def _as_narrow(orbit: Any, width: float) -> bool:
 
 
 def _certainly_stable(orbit: Any, width: float) -> bool:
-    """Whether the orbit in many digits is stable, at a parameter that differs by little of the stretch's width."""
+    """Whether the orbit in many digits is stable, with a parameter that differs by less than a tenth of the stretch's width."""
     found = exact(orbit)
     return (
         found is not None and abs(found.shift) < 0.1 * width and float(np.abs(found.multipliers).max()) < 1.0
@@ -209,14 +211,14 @@ def _certainly_stable(orbit: Any, width: float) -> bool:
 
 
 def _without_trivial(orbit: Any, multipliers: np.ndarray) -> np.ndarray:
-    """A motion without impacts may be moved as a whole: one multiplier is 1."""
+    """Return multipliers without the trivial one (1) of a motion without impacts, whose position is free."""
     if orbit.impacts:
         return multipliers
     return np.delete(multipliers, int(np.argmin(np.abs(multipliers - 1.0))))
 
 
 def _refused(orbit: Any, label: str, tally: Tally) -> None:
-    """A virtual orbit: the simulation does something else."""
+    """Check a virtual orbit: the simulation must not follow it."""
     if orbit.margin > BESIDE:
         tally.find(
             "virtual",
@@ -236,7 +238,7 @@ def _refused(orbit: Any, label: str, tally: Tally) -> None:
 
 
 def settle(draw: Any, tally: Tally, rng: np.random.Generator) -> None:
-    """What a few starts settle on solves its word, with the simulated multipliers."""
+    """Check that motions on which simulations settle solve the equations of their words, with the simulated multipliers."""
     drawn = draw.machine
     for _ in range(STARTS):
         parameters = {**draw.parameters, draw.options["over"]: float(rng.uniform(*draw.options["within"]))}

@@ -1,12 +1,12 @@
-"""Random branches in closed form with two multipliers, whose folds, period doublings and pairs lie in clusters of any size.
+"""Random branches in closed form with two multipliers, with clusters of folds, period doublings and Neimark-Sacker points.
 
     python -m tools.fuzz.spectra 1000 [FIRST_SEED]
 
-The branch is p = integral of g(u) with the polynomial g = k (u - r_1) ... (u - r_i). The characteristic polynomial of its multipliers is given by its values at +1
-and at -1: a tanh((u - r_1)/w_1) ..., which vanishes where the branch turns, and b tanh((u - q_1)/v_1) ..., which vanishes at period doublings.
-Their sum is 2 + 2 P, P the product of both multipliers: a pair is on the circle where it is 4 and both are positive. The witness: the roots r and q, and those of the sum by
-bisection. An even number of folds or
-doublings that is lacking is no finding, nor is a pair beside those: within a step neither end tells of them.
+The branch is p = integral of g(u) with the polynomial g = k (u - r_1) ... (u - r_i). The characteristic polynomial of its multipliers is given by its
+values at +1 and at -1: a tanh((u - r_1)/w_1) ..., which vanishes at folds, and b tanh((u - q_1)/v_1) ..., which vanishes at period doublings.
+Their sum is 2 + 2 P with the product P of both multipliers: a pair lies on the unit circle if the sum is 4 and both values are positive. The exact
+special points are the roots r and q, and those of the sum (by bisection). An even number of missing folds or doublings is no finding, and neither
+is a missing pair next to them, because the ends of a continuation step do not show them.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ import contvines as cv
 from contvines.problems.dense import KERNELS, DenseWork
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
-LOW, HIGH = -0.7, 0.9  # of u; the cluster is at zero
-WIDEST, NARROWEST = -1.0, -9.0  # decades of the size of a cluster
-SAME = 1e-6  # of a cluster's size: places that are one
-PLACE = 1e-12  # or so far apart
-BESIDE = 1e-11  # of the parameter's range: a stretch that is unresolved holds what is so near to it
+LOW, HIGH = -0.7, 0.9  # interval of u; the cluster is at zero
+WIDEST, NARROWEST = -1.0, -9.0  # decadic logarithms of the largest and smallest size of a cluster
+SAME = 1e-6  # largest distance of equal points, relative to the size of the cluster
+PLACE = 1e-12  # lower bound of this distance
+BESIDE = 1e-11  # tolerance of the ends of unresolved stretches, relative to the range of the parameter
 KINDS = ("fold", "period-doubling", "neimark-sacker")
 
 
@@ -63,7 +63,7 @@ class Spectrum(ProblemDefaults):
         return np.sort(self.size * rng.uniform(-3.0, 3.0, count))
 
     def ends(self, u: Any) -> np.ndarray:
-        """The characteristic polynomial at +1 and at -1."""
+        """Return the values of the characteristic polynomial at +1 and at -1."""
         found = [
             height * np.prod([np.ones_like(u), *(np.tanh((u - root) / width) for root in roots)], axis=0)
             for height, width, roots in zip(self.heights, self.widths, (self.folds, self.doublings))
@@ -71,7 +71,7 @@ class Spectrum(ProblemDefaults):
         return np.array(found)
 
     def multipliers(self, u: float) -> np.ndarray:
-        """Both."""
+        """Return both multipliers."""
         one, other = self.ends(u)
         half, product = 0.25 * (other - one), 0.5 * (one + other) - 1.0
         root = np.sqrt(complex(half * half - product))
@@ -84,15 +84,15 @@ class Spectrum(ProblemDefaults):
         row[:4:2], row[1:4:2] = both.real, both.imag
 
     def workspace(self) -> Any:
-        """For contvines."""
+        """Return the workspace that contvines uses."""
         return DenseWork(1)
 
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """p - p(u)."""
+        """Return the residual p - p(u) and its derivatives."""
         return p - self.value(u), -np.diag(self.slope(u)), np.array([1.0])
 
     def places(self) -> list[Place]:
-        """What is there."""
+        """Return the exact special points."""
         found = [Place("fold", u) for u in self.folds] + [Place("period-doubling", u) for u in self.doublings]
         far = np.geomspace(1e-3 * self.size, 2.0, 3000)
         near = np.linspace(-4.0, 4.0, 8001) * self.size
@@ -108,13 +108,13 @@ class Spectrum(ProblemDefaults):
         return sorted(found, key=lambda place: place.u)
 
     def graph(self) -> Any:
-        """Its diagram."""
+        """Compute the diagram."""
         values = self.value(np.linspace(LOW, HIGH, 1001))
         within = float(values.min()) - 1.0, float(values.max()) + 1.0
         return cv.diagram(self, within=within, depth=0)
 
     def wrong(self) -> tuple[list[str], int]:
-        """What the diagram lacks, or has and should not; and how many points it says to be unresolved."""
+        """Return errors of the diagram (missing and additional points), and the number of points that it reports as unresolved."""
         graph, wanted = self.graph(), self.places()
         branch = graph["B1"]
         marks = [(graph[label].kind, float(branch.points[i, 0])) for i, label in branch.marks]
@@ -149,7 +149,7 @@ class Spectrum(ProblemDefaults):
         return said, len(unresolved)
 
     def local(self, u: float) -> float:
-        """Where a place is in the cluster."""
+        """Return a position relative to the size of the cluster."""
         return u / self.size
 
     def _same(self, one: float, other: float) -> bool:
@@ -157,7 +157,7 @@ class Spectrum(ProblemDefaults):
 
 
 def main(count: int, first: int) -> None:
-    """Report on so many branches."""
+    """Check `count` branches and print the findings."""
     began, bad, unresolved, points = time.process_time(), 0, 0, 0
     for seed in range(first, first + count):
         problem = Spectrum(seed)

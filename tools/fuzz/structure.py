@@ -1,4 +1,4 @@
-"""What a graph itself must not have: doubled branches, repeated orbits, branches of no length, borders without a reason, loose ends."""
+"""Check the structure of a graph: no duplicate branches, repeated orbits, branches of length zero, borders without a reason, or loose ends."""
 
 from __future__ import annotations
 
@@ -13,30 +13,31 @@ from tools.fuzz.many_digits import exact, rounds_apart
 from tools.fuzz.motion import apart, shortest
 from tools.fuzz.tally import Tally
 
-ONE = 1e-9  # motions this near are one
-CRITICAL = 1e-2  # multipliers as near to 1: beside a branch point two branches do share an orbit
+ONE = 1e-9  # largest difference of equal motions
+CRITICAL = 1e-2  # distance of multipliers from 1 below which two branches may share an orbit (branch point)
+# largest difference of equal parts of a motion: absolute, and relative to the extent of the branch
 REPEATED, OF_EXTENT = (
     1e-7,
     1e-2,
-)  # parts of a motion that differ by less are one; the same as a part of the branch's extent
-APART = 1e-30  # rounds of one motion, in many digits, that differ by more are two
-SHARED = 1e-6  # motions nearer than this to that of a special point are those of all branches that meet there
-NOTHING = 1e-7  # extent of a branch, in parameter and unknowns, that needs a proof ...
-PART = 1e-2  # ... in many digits: part of it, and of its margin, by which an orbit may be elsewhere
+)
+APART = 1e-30  # smallest difference of different rounds of one motion in many digits
+SHARED = 1e-6  # distance from the motion of a special point below which an orbit is shared by all branches that meet there
+NOTHING = 1e-7  # extent of a branch (parameter and unknowns) below which its orbit is checked in many digits
+PART = 1e-2  # largest error of this orbit, relative to the extent and to its margin
 ROUNDOFF = 1e-9
+# largest difference of a special point's motion from the simulated one, with moderate and with large multipliers
 FOLLOWED, FAR_FOLLOWED = (
     2e-5,
     1e-3,
-)  # differences of a special point's motion from the simulated one, where multipliers are moderate, and not
-ROOTED = (
-    1e-7  # the same, times multipliers, at a graze: a wall that rounding hits turns it into its square root
 )
-ULPS = 64  # values nearer than so many last bits are one: where a multiplier passes 1 or -1 between them is not told
-IN_PLACE = 1e-8  # a special point's error
+# the same at a graze, times the multipliers: an impact due to rounding changes an error to its square root
+ROOTED = 1e-7
+ULPS = 64  # values closer than this many units in the last place count as equal, so that crossings between them are not resolved
+IN_PLACE = 1e-8  # largest error of a special point
 
 
 def judge(graph: Any, tally: Tally) -> None:
-    """All of these checks on one graph."""
+    """Do all checks on one graph."""
     tally.count("branches", len(graph))
     tally.count("special points", len(graph.special))
     for branch in graph:
@@ -73,7 +74,7 @@ def _branch(branch: Any, tally: Tally) -> None:
         return
     places = np.unique(np.linspace(0, len(branch) - 1, 7).astype(int))
     orbits = [branch.orbit(int(i)) for i in places]
-    # a branch so short that it is born by a doubling and hardly leaves it does differ from its root: as much as its own motions do
+    # a very short branch after a doubling differs little from its root, in proportion to its extent
     extent = max(
         float(np.abs(orbit.positions(PER_PERIOD) - orbits[0].positions(PER_PERIOD)).max()) for orbit in orbits
     )
@@ -90,7 +91,7 @@ def _branch(branch: Any, tally: Tally) -> None:
 
 
 def _certainly_there(branch: Any, extent: float) -> bool:
-    """Whether the orbit of the largest margin, in many digits, is off its place by next to nothing of the margin and of the branch."""
+    """Whether the orbit with the largest margin has, against many digits, an error that is small relative to the margin and the branch."""
     orbit = branch.orbit(int(np.argmax(branch.margin)))
     found = exact(orbit)
     return found is not None and abs(found.shift) + found.moved < PART * min(orbit.margin, extent)
@@ -134,7 +135,7 @@ def _point(graph: Any, point: Any, tally: Tally) -> None:
 
 
 def _doubled(branches: list[Any], tally: Tally) -> None:
-    """Motions at the middle of a branch, solved for on every other branch that has this value of the parameter."""
+    """Check that the motion at the middle of a branch is on no other branch; every other branch is solved at the same parameter value."""
     for i, one in enumerate(branches):
         place = _middle(one)
         if place is None:
@@ -156,9 +157,9 @@ def _doubled(branches: list[Any], tally: Tally) -> None:
 
 
 def _middle(branch: Any) -> int | None:
-    """The point of the largest margin: furthest from borders, and not critical, so that the orbit is no other branch's.
+    """Return the point with the largest margin among those that can belong to no other branch; None if there is none.
 
-    Nor one beside a special point of the branch, whose motion all branches share that meet there.
+    Its multipliers must not be critical, and it must not be next to a special point, whose motion several branches share.
     """
     margin = branch.margin.copy()
     margin[[0, -1]] = 0.0

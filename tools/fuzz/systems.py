@@ -2,12 +2,12 @@
 
     python -m tools.fuzz.systems 500 [FIRST_SEED]
 
-A plane curve g(x, p) = 0, often reducible, is hidden in two or three unknowns: y = q(x, p), z = s(x, y, p), then unknowns and rows
-are mixed by unimodular matrices. The witness: parameter values at which real roots of g(., p) meet or go to infinity are the
-roots of its discriminant and leading coefficient; between two of them the roots are arcs in a fixed order, at each of them
-those arcs hang together that end in the multiple root. Of an arc towards a pole only what lies within `escape`
-is asked for, where a branch says that it ends for that. Systems with two such values closer than CLOSE, or with other
-singular points than folds and simple branch points, are not used.
+A plane curve g(x, p) = 0, often reducible, is written in two or three unknowns: y = q(x, p), z = s(x, y, p); then unknowns and rows
+are mixed by unimodular matrices. The exact structure is known: parameter values at which real roots of g(., p) meet or go to infinity are the
+roots of the discriminant and of the leading coefficient. Between two of these values the roots are arcs in a fixed order; at each value
+those arcs are connected that end in the multiple root. An arc towards a pole must be followed only within `escape`,
+if a branch ends with this reason. Systems with two such values closer than CLOSE, or with singular points other than
+folds and simple branch points, are not used.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ import contvines as cv
 from contvines.branches import Reason
 
 LOW, HIGH, CLOSE = -2.0, 2.0, 3e-3
-WIDE = 1e-8  # an unresolved interval that counts
+WIDE = 1e-8  # smallest width of an unresolved interval that counts
 X, P, Y, Z = sy.symbols("x p y z")
 
 
 class Unsuitable(ValueError):
-    """A system that the witness cannot judge."""
+    """A system whose structure is not determined exactly."""
 
 
 class Special(NamedTuple):
@@ -43,14 +43,14 @@ class Special(NamedTuple):
 
 
 class Curve:
-    """Arcs of g(x, p) = 0 within the interval and how they hang together.
+    """Arcs of g(x, p) = 0 in the interval, and their connections.
 
     Attributes
     ----------
     ends : list of float
-        Critical values with the ends of the interval; between two neighbours are arcs.
+        Critical values and the ends of the interval; arcs lie between neighbours.
     middles : list of (float, list of float)
-        A value within each, and the roots there.
+        A value between each two neighbours, and the roots there.
     """
 
     def __init__(self, g: Any) -> None:
@@ -77,7 +77,7 @@ class Curve:
             self._join(k, value)
 
     def roots(self, p: Any) -> list[float]:
-        """Real roots at a value, in order."""
+        """Return the real roots at a value, ascending."""
         with mp.workdps(30):
             c = [
                 mp.mpf(str(sy.N(a.subs(P, sy.Float(str(p), 30)), 30)))
@@ -91,7 +91,7 @@ class Curve:
             return sorted(float(mp.re(r)) for r in found if abs(mp.im(r)) < mp.mpf(10) ** -12)
 
     def _join(self, k: int, value: Any) -> None:
-        """Arcs on both sides of a critical value."""
+        """Connect the arcs on both sides of a critical value."""
         step = mp.mpf(10) ** -9
         left, right = self.roots(value - step), self.roots(value + step)
         if len(left) != len(self.middles[k][1]) or len(right) != len(self.middles[k + 1][1]):
@@ -142,7 +142,7 @@ class Curve:
                     self._link(a, b, special)
 
     def _double(self, value: Any) -> float | None:
-        """The multiple real root at a critical value, or None where a root goes to infinity."""
+        """Return the multiple real root at a critical value; None if a root goes to infinity."""
         with mp.workdps(40):
             c = [
                 mp.mpf(str(sy.N(a.subs(P, sy.Float(str(value), 40)), 40)))
@@ -173,7 +173,7 @@ class Curve:
         self.links.setdefault(b, []).append((a, special))
 
     def connected(self, arc: tuple[int, int]) -> tuple[set[tuple[int, int]], set[Special]]:
-        """Arcs and special points that hang together with an arc."""
+        """Return the arcs and special points that are connected to an arc."""
         known, todo, specials = {arc}, [arc], set()
         while todo:
             for other, special in self.links.get(todo.pop(), []):
@@ -186,7 +186,7 @@ class Curve:
 
 
 def unimodular(rng: np.random.Generator, n: int) -> np.ndarray:
-    """An integer matrix of determinant one."""
+    """Draw an integer matrix with determinant one."""
     matrix = np.eye(n, dtype=int)
     for _ in range(3):
         i, j = rng.choice(n, 2, replace=False)
@@ -195,7 +195,7 @@ def unimodular(rng: np.random.Generator, n: int) -> np.ndarray:
 
 
 def polynomial(rng: np.random.Generator, variables: list[Any], degree: int) -> Any:
-    """A sparse one with small integers."""
+    """Draw a sparse polynomial with small integer coefficients."""
     terms = [sy.Integer(int(rng.integers(-3, 4)))]
     for _ in range(4):
         powers = rng.integers(0, degree + 1, len(variables))
@@ -205,7 +205,7 @@ def polynomial(rng: np.random.Generator, variables: list[Any], degree: int) -> A
 
 
 def curve(rng: np.random.Generator) -> Any:
-    """g(x, p): one polynomial, or a product of two."""
+    """Draw g(x, p): one polynomial, or a product of two."""
     if rng.random() < 0.6:
         first = polynomial(rng, [X, P], 2)
         second = X - int(rng.integers(-1, 2)) if rng.random() < 0.5 else polynomial(rng, [X, P], 2)
@@ -214,12 +214,12 @@ def curve(rng: np.random.Generator) -> Any:
 
 
 class System:
-    """A hidden curve.
+    """A random system of equations that contains the plane curve.
 
     Raises
     ------
     Unsuitable
-        If the witness cannot judge it.
+        If its structure is not determined exactly.
     """
 
     def __init__(self, seed: int) -> None:
@@ -227,7 +227,7 @@ class System:
         g = curve(rng)
         if not (g.has(X) and g.has(P)) or sy.degree(g, X) < 1:
             raise Unsuitable("no curve")
-        with mp.workdps(15):  # whatever others have left: starts are to be the same to the last bit
+        with mp.workdps(15):  # fixed precision, so that starts are always the same to the last bit
             self.curve = Curve(g)
         places = [(k, i) for k, (_, roots) in enumerate(self.curve.middles) for i in range(len(roots))]
         if not places:
@@ -236,7 +236,7 @@ class System:
         self.n = n = int(rng.integers(1, 4))
         hidden = [X, Y, Z][:n]
         self.graphs = [polynomial(rng, [X, P], 2), polynomial(rng, [X, Y, P], 2)][: n - 1]
-        # a multiple of what vanishes anyway, so that the first row is no polynomial of x and p alone
+        # add multiples of the other equations, so that the first row depends on all unknowns
         more = sum((v - q) * polynomial(rng, [X, P], 1) for v, q in zip(hidden[1:], self.graphs))
         rows = [g + more, *(v - q for v, q in zip(hidden[1:], self.graphs))]
         self.columns, self.rows = (
@@ -249,18 +249,18 @@ class System:
         self.others = [sy.lambdify([hidden[: k + 1], P], q, "numpy") for k, q in enumerate(self.graphs)]
 
     def F(self, u: np.ndarray, p: Any) -> np.ndarray:
-        """For contvines."""
+        """Return the residuals, as a function for contvines."""
         return self.rows @ np.array(self.f(self.back @ u, p))
 
     def unknowns(self, x: float, p: float) -> np.ndarray:
-        """u on the curve."""
+        """Return the unknowns u of a point on the curve."""
         hidden = [x]
         for other in self.others:
             hidden.append(float(other(hidden, p)))
         return self.columns @ np.array(hidden)
 
     def wrong(self) -> list[str]:
-        """What a diagram lacks, or has and should not."""
+        """Return errors of the diagram: missing and additional solutions and special points."""
         k, i = self.start
         p0, roots = self.curve.middles[k]
         problem = cv.AlgebraicProblem(self.F, self.unknowns(roots[i], p0), p0)
@@ -301,7 +301,7 @@ class System:
         return said
 
     def beyond(self, problem: Any, graph: Any, x: float, p: float, arc: tuple[float, float]) -> bool:
-        """Whether a place on an arc towards a pole is further away than `escape` says, and a branch has ended for that on such an arc."""
+        """Whether a point on an arc towards a pole lies beyond `escape`, and a branch on this arc has ended with this reason."""
         distance = (self.unknowns(x, p) - problem.u0) / problem.scales.unknowns
         far = np.sqrt((distance**2).mean()) > graph.settings["escape"]
         ends = [end for branch in graph for end in branch.endings if end.reason is Reason.ESCAPED]
@@ -309,7 +309,7 @@ class System:
 
 
 def suitable(first: int) -> Any:
-    """Seeds and systems, without those the witness cannot judge."""
+    """Yield seeds and systems, without unsuitable ones."""
     seed = first
     while True:
         with contextlib.suppress(Unsuitable):
@@ -318,7 +318,7 @@ def suitable(first: int) -> Any:
 
 
 def main(count: int, first: int) -> None:
-    """Report on so many systems."""
+    """Check `count` systems and print the findings."""
     began, bad, unresolved = time.process_time(), 0, 0
     for done, (seed, system) in enumerate(suitable(first)):
         if done == count:

@@ -1,4 +1,4 @@
-"""What a search counts and what it finds."""
+"""Counts of checks, and findings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Finding(NamedTuple):
-    """Something that seems false: which check says so of which machine, and where."""
+    """A result that seems wrong: machine, check, and text with the place."""
 
     kind: str
     salt: int
@@ -20,7 +20,7 @@ class Finding(NamedTuple):
 
 
 class Tally:
-    """Counts and findings of the machine at hand, or of many."""
+    """Counts and findings of one machine, or of many."""
 
     def __init__(self, kind: str = "", salt: int = 0, seed: int = 0) -> None:
         self.kind, self.salt, self.seed = kind, salt, seed
@@ -28,19 +28,19 @@ class Tally:
         self.findings: list[Finding] = []
 
     def count(self, what: str, times: int = 1) -> None:
-        """So many more of something."""
+        """Add to the count of a check."""
         self.counts[what] += times
 
     def find(self, check: str, text: str) -> None:
-        """Something seems false."""
+        """Add a finding."""
         self.findings.append(Finding(self.kind, self.salt, self.seed, check, text))
 
     def add(self, other: Tally) -> None:
-        """Another machine's."""
+        """Add the counts and findings of another machine."""
         self.counts += other.counts
         self.findings += other.findings
 
     def table(self) -> str:
-        """The counts, a line each."""
+        """Return the counts as text, one per line."""
         width = max(map(len, self.counts), default=0)
         return "\n".join(f"{what:<{width}}  {times}" for what, times in sorted(self.counts.items()))

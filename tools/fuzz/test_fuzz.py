@@ -1,4 +1,4 @@
-"""A short search, and forged graphs that every check must notice; ``python -m tools.fuzz absorber 150 1`` asks for more."""
+"""A short search, and graphs with errors that every check must find; ``python -m tools.fuzz absorber 150 1`` runs a longer search."""
 
 from collections import Counter
 from dataclasses import replace

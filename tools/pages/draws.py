@@ -1,8 +1,8 @@
-"""Drawn machines: every example page with drawn parameters, from drawn starts, simulated and solved for.
+"""Check every example machine file with random parameters and random starts.
 
-`python -m tools.pages.draws [COUNT] [NAME ...]` counts, page by page, what must not be: an orbit called real and
-stable that simulation leaves, and a simulated periodic attractor of up to four periods whose word does not solve. That a motion
-recurs is told here from its states once per forcing period (of a self-excited machine: after each event), without words.
+`python -m tools.pages.draws [COUNT] [NAME ...]` counts two kinds of errors for each machine file: a real and stable orbit
+that simulation leaves, and a simulated periodic attractor of up to four periods whose word has no solution. Whether a motion
+is periodic is decided by its states once per forcing period (for a self-excited machine: after each event), without words.
 """
 
 import sys
@@ -16,7 +16,7 @@ from orbits.flows.page.simulator import collect, outside
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from tools.pages.pages import page
 
-# parameters that are drawn, uniformly; the others stay as the page has them
+# intervals of uniformly distributed parameters; all others have the values of the machine file
 RANGES = {
     "impact_oscillator": {"frequency": (0.6, 4.0), "damping": (0.0, 0.2), "gap": (-0.3, 0.8), "restitution": (0.4, 0.95)},
     "bouncing_ball": {"amplitude": (0.02, 0.4), "restitution": (0.3, 0.9)},
@@ -29,17 +29,17 @@ RANGES = {
     "absorber": {"amplitude": (0.1, 1.5), "restitution": (0.4, 0.95), "friction": (0.0, 0.8)},
     "coupled": {"forcing": (0.5, 4.0), "frequency": (0.95, 1.06), "restitution": (0.4, 0.9), "friction": (0.0, 0.8)},
 }  # fmt: skip
-SETTLING = 500  # forcing periods (events of a self-excited machine) before a recurrence is looked for
-RECURS = 1e-8  # difference, relative to 1 + states, of states that recur
-MOST = 4  # forcing periods
-KICKS = (1e-6, 1e-8)  # an orbit may have so narrow a basin that only the smaller one stays in it
-LEAVES = 1e-3  # distance from an orbit, relative to 1 + states, at which a simulation has left it
-ROUNDS = 40  # of the orbit
-CALM = 0.95  # orbits whose multipliers are smaller draw a kicked motion back within the periods it is watched
+SETTLING = 500  # forcing periods (events of a self-excited machine) before the period is determined
+RECURS = 1e-8  # largest difference of recurring states, relative to 1 + states
+MOST = 4  # longest period, in forcing periods
+KICKS = (1e-6, 1e-8)  # perturbations; with a narrow basin only the smaller one stays in it
+LEAVES = 1e-3  # distance from an orbit, relative to 1 + states, above which a simulation has left it
+ROUNDS = 40  # periods of the orbit that are simulated
+CALM = 0.95  # largest modulus of multipliers for which a perturbed motion returns within these periods
 
 
 def drawn(name: str, generator: np.random.Generator) -> tuple[dict[str, float], np.ndarray, float]:
-    """Parameters, and a start outside the walls: state and phase."""
+    """Draw parameters and a start (state and phase) outside the walls."""
     machine = page(name)
     parameters = {key: float(generator.uniform(*limits)) for key, limits in RANGES[name].items()}
     state = generator.uniform(-1.0, 1.0, machine.size)
@@ -49,7 +49,7 @@ def drawn(name: str, generator: np.random.Generator) -> tuple[dict[str, float], 
 
 
 def recurrence(machine, parameters, state, phase) -> int:
-    """Shortest period (forcing periods; events of a self-excited machine) of the motion reached; 0: none, or a wall holds the body."""
+    """Return the period (in forcing periods; in events of a self-excited machine) of the motion on which a simulation settles; 0 for none, or if a wall holds the body."""
     stepper = Stepper(machine, machine.vector(parameters))
     stepper.start(state, phase)
     rows, events = [], []
@@ -74,12 +74,12 @@ def recurrence(machine, parameters, state, phase) -> int:
     kept = range(1, min(longest, (len(table) - 1) // 2) + 1)
     gaps = {k: np.abs(table[k:] - table[:-k]).max() for k in kept}
     period = next((k for k, gap in gaps.items() if gap < scale), 0)
-    # it may still be falling, from one side and the other in turn, onto a motion of a shorter period
+    # the motion may still converge, with alternating sides, to one with a shorter period
     return 0 if any(gaps[k] < 1e3 * scale for k in range(1, period)) else period
 
 
 def stays(orbit) -> bool:
-    """Whether the simulation follows a stable orbit, and comes back to it after a small kick."""
+    """Whether the simulation follows a stable orbit, and returns to it after a small perturbation."""
     if not orbit.replay() < 1e-6:
         return False
     if not len(orbit.multipliers) or np.abs(orbit.multipliers[0]) > CALM or orbit.margin < 1e-3:
@@ -88,7 +88,7 @@ def stays(orbit) -> bool:
 
 
 def comes_back(orbit, kick) -> bool:
-    """Whether a simulation that is kicked off an orbit is back on it after some rounds."""
+    """Whether a perturbed simulation is on the orbit again after `ROUNDS` periods."""
     machine, nodes = orbit.model, orbit.nodes
     stepper = Stepper(machine, orbit.params)
     clock = float(nodes[0, 0]) if machine.forced else 0.0
@@ -116,7 +116,7 @@ def comes_back(orbit, kick) -> bool:
 
 
 def examined(name: str, parameters, state, phase) -> tuple[str, list[str]]:
-    """What the start leads to, and what must not be."""
+    """Simulate from the start; return the kind of the motion and a list of errors."""
     machine = page(name)
     start = {**dict(zip(machine.states, map(float, state))), **({"phase": phase} if machine.forced else {})}
     try:
@@ -142,7 +142,7 @@ def examined(name: str, parameters, state, phase) -> tuple[str, list[str]]:
 
 
 def continued(name: str, parameters, state, phase) -> tuple[int, list[str]]:
-    """Orbits of the branch through the attractor: number of stable ones asked, and those that simulation leaves."""
+    """Follow the branch through the attractor; return the number of stable orbits that were checked, and those that simulation leaves."""
     machine = page(name)
     start = {**dict(zip(machine.states, map(float, state))), **({"phase": phase} if machine.forced else {})}
     orbit = machine.attractor(start, **parameters).orbit
@@ -163,7 +163,7 @@ def continued(name: str, parameters, state, phase) -> tuple[int, list[str]]:
 
 
 def main() -> None:
-    """Count what must not be."""
+    """Count the errors of every machine file."""
     arguments = sys.argv[1:]
     count = int(arguments.pop(0)) if arguments and arguments[0].isdigit() else 100
     for name in arguments or RANGES:

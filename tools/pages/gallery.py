@@ -1,7 +1,7 @@
-"""Every special orbit of the gallery's pages against an integrator that shares nothing with the engine.
+"""Compare all special orbits of the gallery's machine files with an independent integrator.
 
-`python -m tools.pages.gallery [NAME ...]` makes the diagrams of `examples/machines/draw.py` and prints, for each, the
-largest difference between a special orbit's nodes and DOP853 at 1e-12 with events, from node to node. Infinite: something else happens.
+`python -m tools.pages.gallery [NAME ...]` computes the diagrams of `examples/machines/draw.py` and prints, for each, the
+largest difference between nodes of special orbits and DOP853 (1e-12, with events) from node to node; infinite if a different event happens.
 """
 
 import importlib.util
@@ -14,7 +14,7 @@ from tools.pages.pages import PAGES
 
 
 def gallery():
-    """The module that draws the gallery."""
+    """Import the module that draws the gallery."""
     spec = importlib.util.spec_from_file_location("gallery_of_pages", PAGES / "draw.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -23,20 +23,20 @@ def gallery():
 
 
 def deviations(graph) -> dict[str, float]:
-    """Special point -> how far its orbit is from the independent integrator's."""
+    """Return special point -> difference between its orbit and the independent integration."""
     found = {}
     for label, point in graph.special.items():
         problem = graph.branches[point.branch].problem
         if point.kind != "end" and problem.dimension == len(point.u):
             orbit = problem.orbit(point.u, point.value)
-            if not isinstance(orbit, Orbit):  # a cycle of the smooth flow: judged by shooting elsewhere
+            if not isinstance(orbit, Orbit):  # a cycle of a smooth flow, which `tools.flow_demos` checks
                 continue
             found[label] = deviation(orbit, orbit.model.equations.formulas_of_motion)
     return found
 
 
 def main() -> None:
-    """The largest difference of every page."""
+    """Print the largest difference for every machine file."""
     module = gallery()
     for name in sys.argv[1:] or module.RUNS:
         began = time.process_time()

@@ -1,6 +1,6 @@
-"""A second simulator of declared machines: the page's own functions on plain numbers, scipy's DOP853 and its events.
+"""Independent simulator of declared machines: functions of the machine file on plain numbers, with scipy's DOP853 and its events.
 
-It shares nothing with the engine: no symbols, no Taylor steps; forces at rest are solved for from two evaluations of `motion`.
+It uses no symbols and no Taylor series; friction forces while sticking follow from two evaluations of `motion`.
 """
 
 from types import SimpleNamespace
@@ -12,7 +12,7 @@ from orbits import DryFriction, Wall
 
 
 class Numbers(tuple):
-    """States as numbers, by place and by name."""
+    """States as numbers, with access by index and by name."""
 
     def __new__(cls, names, values):
         made = super().__new__(cls, values)
@@ -35,7 +35,7 @@ class Independent:
         return given(state, phase, self.p) if callable(given) else given
 
     def rates(self, t, x, modes, forces=None):
-        """Rates of the states; frictions that stick get the force that keeps their velocity."""
+        """Return the rates of the states; the force of a sticking friction is the one that keeps its velocity constant."""
         state = Numbers(self.machine.states, x)
         phase = None if self.omega is None else self.omega * t
         given, stuck = {}, []
@@ -68,7 +68,7 @@ class Independent:
         return zero + self.force * (one - zero)
 
     def along(self, function, t, x, rates, step=1e-6):
-        """Time derivative of a function of (state, phase, p): a central difference along the flow."""
+        """Time derivative of a function of (state, phase, p), by a central difference along the flow."""
 
         def at(s):
             phase = None if self.omega is None else self.omega * (t + s)
@@ -77,7 +77,7 @@ class Independent:
         return (at(step) - at(-step)) / (2 * step)
 
     def guards(self, modes):
-        """(contact, function of (t, x)) of everything that may happen in a mode."""
+        """Return (contact, function of (t, x)) for all events that are possible in a mode."""
         found = []
         for j, (contact, mode) in enumerate(zip(self.machine.contacts, modes)):
             if isinstance(contact, DryFriction) and mode == 0:
@@ -109,7 +109,7 @@ class Independent:
         return found
 
     def impact(self, wall, t, x, modes):
-        """States after an impact, from the gap's rate before it."""
+        """Return the states after an impact, by the rate of the gap before it."""
         state = Numbers(self.machine.states, x)
         phase = None if self.omega is None else self.omega * t
         push = np.array([self.number(wall.push.get(n, 0.0), state, phase) for n in self.machine.states])
@@ -124,7 +124,7 @@ class Independent:
 
 
 def crossed(function, run, t, touches=1e-8):
-    """Whether a guard that falls to zero at t goes on below it: at a border it may touch."""
+    """Whether a function that decreases to zero at t becomes negative; at a border it may only touch zero."""
     later = t + (run.t[-1] - t) * np.linspace(0.0, 1.0, 200)
     values = [function(s, run.sol(s)) for s in later]
     back = next((k for k, value in enumerate(values) if k and value > touches), len(values))
@@ -132,7 +132,7 @@ def crossed(function, run, t, touches=1e-8):
 
 
 def deviation(orbit, motion):
-    """Largest difference between an orbit's nodes and DOP853 from each node to the next; infinite where something else happens first."""
+    """Largest difference between an orbit's nodes and DOP853 from each node to the next; infinite if a different event happens first."""
     machine = orbit.model
     own = Independent(machine, orbit.parameters, motion)
     word, nodes, n = orbit.word, orbit.nodes, len(orbit.word)

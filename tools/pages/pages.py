@@ -1,4 +1,4 @@
-"""The example pages, loaded once."""
+"""Load machine files of the examples, each one once."""
 
 from functools import cache
 from pathlib import Path

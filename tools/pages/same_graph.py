@@ -1,10 +1,10 @@
-"""The built-in absorbers declared in a machine file, against themselves: the same words, the same special points, the same graph.
+"""Compare graphs of built-in machines with graphs of the same machines declared in machine files.
 
-`python -m tools.pages.same_graph [friction] [friction_low] [frequency]` makes the diagrams of these example studies with
-both and compares them: branches by word, periods and ends; special points by kind, value, whether they are real, and multipliers
-(but at borders, where they depend on the side); and which branches meet at which point.
+`python -m tools.pages.same_graph [friction] [friction_low] [frequency]` computes the diagrams of these example studies with
+both and compares them: branches by word, periods and ends; special points by kind, value, reality and multipliers
+(except at borders, where multipliers depend on the side); and the branches that meet at each point.
 
-`python -m tools.pages.same_graph drawn absorber 50 SALT` does so with machines that :mod:`tools.fuzz.drawing` draws.
+`python -m tools.pages.same_graph drawn absorber 50 SALT` does this with random machines of :mod:`tools.fuzz.drawing`.
 """
 
 import sys
@@ -25,13 +25,13 @@ from tools.pages.pages import page
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BUILT_IN = {"absorber": Absorber, "coupled": Coupled}
 STUDIES = ("friction", "friction_low", "frequency")
-EXACT = "exact"  # the excitation that the page has
-SAME = 1e-10
-ENDS = 1e-9  # ends of branches: borders of both kinds are found from either side
+EXACT = "exact"  # the excitation in the machine file
+SAME = 1e-10  # largest difference of values of one special point
+ENDS = 1e-9  # largest difference of ends of branches; the two graphs may locate a border from different sides
 
 
 class Differences(NamedTuple):
-    """Special points in both graphs, the largest difference of their values and multipliers, and what differs."""
+    """Number of special points in both graphs, the largest differences of their values and multipliers, and texts on other differences."""
 
     points: int
     values: float
@@ -40,7 +40,7 @@ class Differences(NamedTuple):
 
 
 def both(name: str, **changed: Any) -> tuple[str, list[Any]]:
-    """The machine of an example study, and its graphs: of the built-in machine and of its page."""
+    """Return the machine's name and the two graphs of an example study: by the built-in machine and by the machine file."""
     study = tomllib.loads((EXAMPLES / f"{name}.toml").read_text())
     given, start = dict(study["model"]), dict(study["start"])
     settings = {**study["continue"], **changed}
@@ -54,7 +54,7 @@ def both(name: str, **changed: Any) -> tuple[str, list[Any]]:
 
 
 def drawn(kind: str, salt: int, seed: int, most: int = 40) -> list[Any]:
-    """The graphs of a drawn machine, without its virtual branches; none for those that the page does not have, or that are cut at so many branches."""
+    """Return the two graphs of a random machine, without virtual branches; empty if the machine file cannot represent it, or a graph has more than `most` branches."""
     draws = draw(kind, salt, seed)
     given = {} if draws.orbit is None else dict(draws.orbit.parameters)
     if not given.get("friction") or given.pop("excitation", EXACT) != EXACT or not len(draws.orbit.word):
@@ -68,7 +68,7 @@ def drawn(kind: str, salt: int, seed: int, most: int = 40) -> list[Any]:
 
 
 def compared(kind: str, built_in: Any, declared: Any) -> Differences:
-    """What differs between the graph of a built-in machine and that of its page."""
+    """Compare the graph of a built-in machine with that of its machine file."""
     wrong: list[str] = []
     branches = _matched(built_in.branches, declared.branches, _branch(kind), ENDS, wrong)
     points = _matched(built_in.special, declared.special, _point, SAME, wrong)
@@ -93,7 +93,7 @@ def _matched(
     near: float,
     wrong: list[str],
 ) -> dict[str, str]:
-    """Label -> label of what has the same form, and numbers as near as `near`, in the other graph."""
+    """Return label -> label of the item in the other graph with the same key, and with numbers that differ by at most `near`; add unmatched items to `wrong`."""
     found: dict[str, str] = {}
     left = {label: told(thing) for label, thing in there.items()}
     for label, thing in here.items():

@@ -1,7 +1,7 @@
-"""A mass with dry friction between two stops, for very long: it never leaves them.
+"""Long simulation of a mass with dry friction between two stops, which it must not penetrate.
 
-`python -m tools.pages.stops [IMPACTS]` simulates a million impacts by default and prints how far the mass was ever beyond a
-stop: at every event, and at the largest and smallest displacement inside every flight, found as roots of the velocity in the steps.
+`python -m tools.pages.stops [IMPACTS]` simulates a million impacts by default and prints the largest penetration of a
+stop: at events, and at extrema of the displacement inside flights, located as roots of the velocity in the steps.
 """
 
 import sys
@@ -15,7 +15,7 @@ from tests.orbits.declared.test_simulation import rattler
 
 
 def farthest(impacts: int, forcing: float = 5.0, frequency: float = 1.1) -> tuple[float, int]:
-    """Largest |x| met, and the number of events, over so many impacts between stops at -1 and 1."""
+    """Return the largest |x| and the number of events in a simulation with this number of impacts between stops at -1 and 1."""
     machine = rattler()
     stepper = Stepper(machine, machine.vector({"forcing": forcing, "frequency": frequency}))
     stepper.start(np.array([0.3, 0.1]), 0.0)

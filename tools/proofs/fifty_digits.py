@@ -1,7 +1,7 @@
-"""Orbits to 50 digits by a route of their own: mpmath, flights as matrix exponentials, shooting over the whole period.
+"""Independent computation of orbits to 50 digits with mpmath: flights as matrix exponentials, shooting over the whole period.
 
 Between events every motion is linear, y' = M y with y = (w, w', sin Psi, cos Psi, 1) or (q1, q1', q2, q2', sin Psi, cos Psi, 1), so a flight is
-expm(M t) y: no closed form of the package or of its proofs is used. Run as a program it writes `fifty_digits.json` anew.
+expm(M t) y. No closed form of the package or of its proofs is used. Run as a program, it writes `fifty_digits.json`.
 """
 
 import json
@@ -26,7 +26,7 @@ ON_END = {
 
 
 def cases():
-    """(machine, word, periods, parameters as decimals): 35 of absorbers, 9 of cavities, two of these a ball that bounces."""
+    """Return all cases (machine, word, periods, parameters as decimals): 35 absorbers and 9 cavities, two of which are a bouncing ball."""
     reduced = SET | {"frequency": "1"}
     found = [("absorber", "LR", 1, reduced | {"amplitude": f"0.{c}"}) for c in range(30, 100, 4)]
     found += [
@@ -49,7 +49,7 @@ def cases():
 
 
 def sides(p):
-    """By side, 1 for the left: where the wall is, its restitution, and the friction of sliding in this mode."""
+    """Return side (1 left, -1 right) -> position of the wall, its restitution, and the friction of sliding in the mode of this sign."""
     names = {1: "left", -1: "right"}
     return {
         s: (
@@ -62,12 +62,12 @@ def sides(p):
 
 
 def generator(machine, p, mode):
-    """M of one mode."""
+    """Return the matrix M of one mode."""
     omega, eps, r = p["frequency"], p["mass_ratio"], sides(p)[mode][2] * p["gravity"] if mode else 0
     if machine != "coupled":
         M = matrix(5, 5)
         M[0, 1] = 1
-        # along the slope friction has the load cos, gravity pulls with sin to the right wall
+        # on a slope the normal force is proportional to cos, and gravity pulls with sin towards the right wall
         tilt = p.get("slope", mpf(0))
         force = -mode * r * cos(tilt) - p["gravity"] * sin(tilt)
         M[1, 2], M[1, 4] = -p["amplitude"] * omega**2, (1 + eps) * force
@@ -84,14 +84,14 @@ def generator(machine, p, mode):
 
 
 def relative(machine, y):
-    """w, w', v, v' of a state."""
+    """Return w, w', v, v' of a state."""
     if machine != "coupled":
         return y[0], y[1], None, None
     return y[0] - y[2], y[1] - y[3], None, None
 
 
 def shot(machine, word, periods, p, x):
-    """Residuals of the shooting equations, and the nodes; x holds the events' phases, B+ and for the coupled machine v, v'."""
+    """Return the residuals of the shooting equations, and the nodes; x contains the phases of the events, B+ and, for the coupled machine, v, v'."""
     n, eps, omega = len(word.events), p["mass_ratio"], p["frequency"]
     walls = {letter: sides(p)[s][:2] for letter, s in WALL.items()}
     phases = [*x[:n], x[0] + 2 * pi * periods]
@@ -120,7 +120,7 @@ def shot(machine, word, periods, p, x):
         letter = word.events[(i + 1) % n]
         w, rate, *_ = relative(machine, y)
         rows.append(w - walls[letter][0] if letter in WALL else rate)
-        if letter in WALL:  # w' turns, v' stays
+        if letter in WALL:  # w' is reversed, v' does not change
             r = walls[letter][1]
             if machine != "coupled":
                 y[1] = -r * rate
@@ -131,7 +131,7 @@ def shot(machine, word, periods, p, x):
 
 
 def node(machine, letter, y, p, phase):
-    """(Psi, B+ or w[, v, v']) of a state after an event."""
+    """Return the node (Psi, B+ or w[, v, v']) of a state after an event."""
     if machine != "coupled":
         B = p["amplitude"] * p["frequency"] * y[3] - y[1]
         return [phase, B if letter in WALL else y[0]]
@@ -140,7 +140,7 @@ def node(machine, letter, y, p, phase):
 
 
 def floating(machine, word, periods, given):
-    """The orbit in double precision, to start from."""
+    """Return the orbit in double precision, as start values."""
     values = {name: float(value) for name, value in given.items()}
     if machine == "absorber":
         own = {
@@ -158,7 +158,7 @@ def floating(machine, word, periods, given):
 
 
 def solve(machine, text, periods, given, digits=60):
-    """Word and nodes of the orbit, the latter to more than 50 digits."""
+    """Return the orbit in double precision, and its nodes to 50 digits."""
     orbit = floating(machine, text, periods, given)
     with mp.workdps(digits):
         p = {name: mpf(value) for name, value in given.items()}

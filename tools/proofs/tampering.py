@@ -1,6 +1,6 @@
-"""Proved orbits, special points and stretches with something wrong put into them: no wrong one may be proved, no wrong certificate verified.
+"""Insert errors into orbits, special points and certificates: no wrong input may be proved, and no wrong certificate verified.
 
-Run by itself for a large count: ``python -m tools.proofs.tampering 100000``.
+Run it as a program for many trials: ``python -m tools.proofs.tampering 100000``.
 """
 
 import copy
@@ -20,12 +20,12 @@ from orbits.proofs.subjects import of_orbit
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 COUPLED = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, forcing=2.47, damping=1.0)
 LETTERS = "LRtsu"
-FELT = ("friction", "gravity", "restitution")  # numbers that move every motion tampered with
+FELT = ("friction", "gravity", "restitution")  # numbers that influence all orbits used here
 
 
 @functools.cache
 def orbits():
-    """Orbits to tamper with: real and virtual, stable and unstable, of both machines."""
+    """Return the orbits that are changed: real and virtual, stable and unstable, of both machines."""
     return [
         ABSORBER.symmetric_orbit(amplitude=0.55),
         ABSORBER.symmetric_orbit(amplitude=0.9),
@@ -38,7 +38,7 @@ def orbits():
 
 
 def arguments(orbit):
-    """What `prove_orbit` takes, as a dict to tamper with."""
+    """Return the arguments of `prove_orbit` for an orbit, as a dict."""
     return {
         "machine": orbit.model.name,
         "events": list(orbit.word.events),
@@ -50,7 +50,7 @@ def arguments(orbit):
 
 
 def wrong_input(given, random):
-    """One wrong thing: a node, a parameter, a letter, a mode, the number of periods. Returns what was done."""
+    """Insert one error: a node, a parameter, a letter, a mode, or the number of periods; return its kind and the input."""
     wrong = copy.deepcopy(given)
     kind = random.choice(["node", "parameter", "letter", "mode", "periods", "order"])
     n = len(wrong["events"])
@@ -61,7 +61,7 @@ def wrong_input(given, random):
     elif kind == "parameter":
         name = random.choice([n for n in wrong["parameters"] if n not in ("excitation", "damping")])
         if name == "restitution" and not {"L", "R"} & set(wrong["events"]):
-            name = "gravity"  # nothing hits a wall
+            name = "gravity"  # without impacts the restitution has no influence
         if name == "mass_ratio" and given["machine"] == "absorber":
             name = "friction"
         wrong["parameters"][name] *= 1 + random.choice([-1, 1]) * 10.0 ** random.uniform(-2.5, -0.5)
@@ -84,7 +84,7 @@ def wrong_input(given, random):
 
 
 def false_proof(wrong, half):
-    """Whether a wrong input is proved to be a real orbit, or to exist where only its numbers are wrong."""
+    """Whether a wrong input is proved to exist and not proved to be virtual."""
     try:
         proof = prove_orbit(**wrong, half=half)
     except ProofError:
@@ -95,14 +95,14 @@ def false_proof(wrong, half):
 # ------------------------------------------------------------------ special points
 @functools.cache
 def graph():
-    """A graph with a fold, a symmetry breaking and borders."""
+    """Compute a graph with a fold, a symmetry breaking and borders."""
     seed = ABSORBER.symmetric_orbit(amplitude=0.6)
     return cv.diagram(seed, over="amplitude", within=(0.24, 0.9), depth=1)
 
 
 @functools.cache
 def points():
-    """(problem, kind, u, value, margin) of special points, all of which are proved as they are."""
+    """Return (problem, kind, u, value, margin) of special points, all of which can be proved without an error."""
     named = [p for p in graph().special.values() if p.kind != "end"]
     found = [(p.problem, p.kind, p.u, float(p.value), p.margin_index) for p in named]
     doubling = ABSORBER.orbit("LttR", 1, amplitude=1.06219817632)
@@ -115,14 +115,14 @@ def points():
 
 
 def wrong_point(given, random):
-    """One wrong thing about a special point: its kind, its margin, a node, where it is, a number of its machine."""
+    """Insert one error into a special point: its kind, margin, a node, its value, or a number of its machine; return its kind and the point."""
     problem, kind, u, value, margin = given
     what = random.choice(["kind", "margin", "node", "value", "machine"])
     if what == "margin" and margin is None:
         what = "kind"
     phases = problem.expand(np.array(u))[:, 0]
     if what == "node" and np.min(np.diff(phases), initial=1.0) < 1e-3:
-        what = "value"  # a flight that has shrunk to nothing is left out, its node is of no account
+        what = "value"  # a flight of duration zero is left out by the proof, so its node has no influence
     if what == "kind":
         kinds = ["fold", "symmetry-breaking", "period-doubling", "neimark-sacker"]
         kind = random.choice([other for other in kinds if other != kind])
@@ -159,7 +159,7 @@ def false_point(wrong):
 # ------------------------------------------------------------------ certificates
 @functools.cache
 def certificates():
-    """True certificates to tamper with, small ones: orbits, special points of every kind, a stretch of a branch."""
+    """Return right certificates of small size: orbits, special points of every kind, a stretch of a branch."""
     proofs = [of_orbit(orbit) for orbit in (orbits()[i] for i in (0, 1, 3, 5))]
     proofs += [problem.prove(kind, u, p, margin=margin) for problem, kind, u, p, margin in points()]
     (stretch,) = (p for p in graph()["B1"].prove(within=(0.592, 0.6)).pieces if p.stable)
@@ -167,7 +167,7 @@ def certificates():
 
 
 def wrong_certificate(given, random):
-    """One wrong thing in a certificate: a claim, a box, a parameter, the word, what kind of point it is."""
+    """Insert one error into a certificate: a claim, a box, a parameter, the word, or the kind of point; return its kind and the certificate."""
     wrong = copy.deepcopy(given)
     tiles = wrong["boxes"][1::2]
     special = tiles[0]["kind"] if tiles else None
@@ -195,7 +195,7 @@ def wrong_certificate(given, random):
         wrong["format"] = str(random.choice(["contvines certificate 2", "certificate", ""]))
     elif (
         kind == "value"
-    ):  # of an orbit by more than its tile is wide; of a tile by more than the orbits are apart
+    ):  # shift an orbit by more than the width of its tile; a tile by more than the distance of the orbits
         at = box["parameter"]
         size = 10.0 ** random.uniform(0.5, 6) * (2 * float(tiles[0]["half_width"]) + 1e-4 if tiles else 1e-9)
         at[0] = repr(float(at[0]) + random.choice([-1, 1]) * size)
@@ -211,7 +211,7 @@ def wrong_certificate(given, random):
         (tiles[0] if tiles else box)["kind"] = str(random.choice(names))
     elif kind == "condition without a border":
         box["conditions"] = [["flight", int(random.integers(len(wrong["events"]))), 1]]
-    elif kind == "node":  # by more than the radius
+    elif kind == "node":  # shift it by more than the radius
         size = 10.0 ** random.uniform(0.5, 5) * (float(triple[2]) + 1e-13)
         triple[0] = repr(float(triple[0]) + random.choice([-1, 1]) * size)
     elif kind == "radius":
@@ -226,7 +226,7 @@ def wrong_certificate(given, random):
         tile["half_width"] = repr(float(tile["half_width"]) * random.choice([0.0, 0.5, 30.0]))
     elif kind == "missing":
         del wrong["boxes"][random.integers(1, len(wrong["boxes"]) - 1)]
-    elif kind == "end":  # the same orbit on both sides; of a stretch's first tile that is still true
+    elif kind == "end":  # one orbit on both sides of a tile, which is right for a stretch's first tile
         i = 2 * random.integers(int(special is None), len(tiles))
         wrong["boxes"][i] = copy.deepcopy(wrong["boxes"][i + 2])
     elif kind == "exponent":
@@ -258,7 +258,7 @@ def wrong_certificate(given, random):
     elif kind == "mode":
         i = random.integers(len(wrong["modes"]))
         wrong["modes"][i] = int(random.choice([m for m in (-1, 0, 1) if m != wrong["modes"][i]]))
-    elif kind == "half":  # any other number would close the word by some other map
+    elif kind == "half":  # a different value means a different closing of the word
         wrong[kind] = [not wrong[kind], 2, -1, 0.5][random.integers(4)]
     elif kind == "frictionless":
         wrong[kind] = not wrong[kind]
@@ -277,7 +277,7 @@ def verified(wrong):
 
 
 def trial(number, random):
-    """One wrong input, every hundredth a certificate, every tenth a special point: what was wrong, the input, whether it passed."""
+    """Try one wrong input (every hundredth a certificate, every tenth a special point, else an orbit); return its kind, the input, and whether it passed."""
     if number % 100 == 0:
         papers = certificates()
         kind, wrong = wrong_certificate(papers[random.integers(len(papers))], random)
@@ -293,7 +293,7 @@ def trial(number, random):
 
 
 def main(count, seed=7):
-    """Tamper `count` times; print how many were proved or verified."""
+    """Do `count` trials; print the numbers of wrong inputs that were proved or verified."""
     random = np.random.default_rng(seed)
     found = 0
     for number in range(count):
