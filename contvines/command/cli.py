@@ -181,8 +181,8 @@ for name, (_, its_sentence) in COMMANDS.items():
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; every error becomes a message on stderr and a non-zero exit status."""
-    gc.set_threshold(300_000, 20, 100)  # imports and compiled code make many objects that stay
-    atexit.register(gc.freeze)  # else Python looks through them all before it ends: a fifth of a short run
+    gc.set_threshold(300_000, 20, 100)  # fewer collections: imports make many permanent objects
+    atexit.register(gc.freeze)  # otherwise a collection at exit takes a fifth of a short run
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in words
     words = [w for w in words if w != "--debug"]

@@ -1,4 +1,4 @@
-"""The frame of every verb: the place of its result, progress, Ctrl-C, and what is printed and drawn at the end."""
+"""Steps common to all commands: the path of the result, progress, Ctrl-C, printing and drawing of the result."""
 
 from __future__ import annotations
 
@@ -18,29 +18,41 @@ if TYPE_CHECKING:
     from ..graph import Graph
     from ..loci.chart import Chart
 
-MOST_NAMED = 24  # labels in one sentence
+MOST_NAMED = 24  # largest number of labels in one message
 
 
 class Interrupted(Exception):
-    """Ctrl-C in the middle of the work; the message says what is kept and how to go on."""
+    """Ctrl-C during the computation; the message says what is stored and how to continue."""
 
 
 def say(text: str, quiet: bool = False) -> None:
-    """A remark for the user, on stderr so that results on stdout stay clean."""
+    """Print a remark for the user on stderr, so that stdout has results only."""
     if not quiet:
         print(fitted(text), file=sys.stderr)
 
 
 # ---------------------------------------------------------------------- places
 def beside(path: Path, ending: str) -> Path:
-    """The default place of a result: the study's or file's name with another ending, in the current folder."""
+    """Return the default path of a result: the name of the study or file with another ending, in the current folder."""
     return Path(path.stem + ending)
 
 
 def place_of(output: Path | None, source: Path, ending: str) -> Path:
-    """Where a result goes: the place that was asked for, or the default, whose name ends so; refused before any work if it will not do.
+    """Return the path of a result, and check before any work that it can be written there.
 
-    A result does not replace what it is made from.
+    Parameters
+    ----------
+    output : Path or None
+        Given by the user; None: the default, see `beside`.
+    source : Path
+        The study or file from which the result is computed; it must not be the same.
+    ending : str
+        Of the result's name.
+
+    Raises
+    ------
+    ValueError
+        If the path is invalid.
     """
     path, kind = output or beside(source, ending), ending.rpartition(".")[2]
     if path.resolve() == source.resolve():
@@ -58,22 +70,22 @@ def place_of(output: Path | None, source: Path, ending: str) -> Path:
 
 @contextmanager
 def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...] = ()) -> Iterator[None]:
-    """Be the only run at work on a file; wait for another one first. What killed runs have left beside it is removed.
+    """Hold the lock of a result's file, after waiting for other runs on it; drafts that killed runs have left are removed.
 
     Parameters
     ----------
     target : Path
-        A .vines file, or another one that a run writes piece by piece.
+        A .vines file, or another file that a run writes piece by piece.
     quiet : bool
     fresh : bool
-        Set aside the file that is there.
+        Rename an existing file first; see `contvines.store.on_disk.set_aside`.
     others : tuple of Path
-        Files that belong to the target, and are set aside with it.
+        Files that belong to the target and are renamed with it.
 
     Raises
     ------
     ValueError
-        If a file cannot be set aside.
+        If a file cannot be renamed.
     """
     from ..store.on_disk import TAILS, locked, remove_drafts, set_aside
 
@@ -99,7 +111,7 @@ def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...
 
 
 def _fold(target: Path) -> None:
-    """Fold its log into a .vines file, unless that is damaged."""
+    """Merge the write-ahead log of a .vines file into it, unless the file is damaged."""
     from ..store import Store, StoreError
 
     if target.suffix == ".vines" and target.exists():
@@ -110,7 +122,7 @@ def _fold(target: Path) -> None:
 # ---------------------------------------------------------------------- work
 @contextmanager
 def interruptible(note: str) -> Iterator[None]:
-    """Ctrl-C ends the command with a sentence that says what is kept and how to go on."""
+    """Turn Ctrl-C inside the context into `Interrupted`; `note` says what is stored and how to continue."""
     try:
         yield
     except KeyboardInterrupt:
@@ -119,7 +131,7 @@ def interruptible(note: str) -> Iterator[None]:
 
 @contextmanager
 def working(note: str, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
-    """Interruptible work; gives what to hand to ``progress=``, which tells a terminal, or a log, where the work is."""
+    """Run an interruptible computation; yield the argument for its ``progress=``, which shows progress on a terminal or in a log."""
     from ..long_work import shown
 
     with interruptible(note), shown(not quiet) as progress:
@@ -130,12 +142,12 @@ R = TypeVar("R", "Graph", "Chart")
 
 
 def finished_of(kind: type[R], target: Path, fingerprint: str, quiet: bool, *, problems: bool) -> R | None:
-    """The finished result of a run in its file; None if the run is still to be done, or to be gone on with.
+    """Return the finished result of a run from its file; None if there is no file, or its run is unfinished.
 
     Raises
     ------
     ValueError
-        If the file is refused, or belongs to another run.
+        If the file is invalid, or belongs to another run.
     """
     from ..store import Store
 
@@ -153,7 +165,7 @@ def finished_of(kind: type[R], target: Path, fingerprint: str, quiet: bool, *, p
 
 
 def made(target: Path, fingerprint: str, study: dict[str, Any], quiet: bool, make: Callable[..., R]) -> R:
-    """What a run makes with ``journal=`` and ``progress=``, each finished point kept in its file, which keeps its study, too."""
+    """Compute a result by ``make(journal=..., progress=...)`` with the file `target` as journal; the file also stores the study."""
     from ..store import Store
 
     note = f"all finished points are kept in {target}; the same command goes on from there"
@@ -166,7 +178,7 @@ def made(target: Path, fingerprint: str, study: dict[str, Any], quiet: bool, mak
 
 # ---------------------------------------------------------------------- results
 def load_file(file: Path, trust: bool = False, problems: bool = True) -> Graph:
-    """The graph of a file; a chart is refused."""
+    """Load the graph of a file; raise a ValueError for a chart."""
     from ..graph import Graph
     from ..store import load
 
@@ -177,7 +189,7 @@ def load_file(file: Path, trust: bool = False, problems: bool = True) -> Graph:
 
 
 def point_of(graph: Graph | Chart, label: str) -> tuple[Any, int | None]:
-    """What a label names, and of a branch or locus the number of a point where the label has one, as ``B1:12``.
+    """Return the object with a label and, for a label such as ``B1:12``, the number of the point on the branch or locus, otherwise None.
 
     Raises
     ------
@@ -199,7 +211,7 @@ def point_of(graph: Graph | Chart, label: str) -> tuple[Any, int | None]:
 
 
 def check_special(graph: Graph, file: Path, label: str) -> None:
-    """Refuse a label that is not that of a special point."""
+    """Raise a ValueError if a label is not that of a special point."""
     if label not in graph.special:
         what = "is a branch" if label in graph.branches else "is no label of it"
         alike = [name for name in graph.special if name.rstrip("0123456789") == label.rstrip("0123456789")]
@@ -211,7 +223,7 @@ def check_special(graph: Graph, file: Path, label: str) -> None:
 
 
 def refuse_detached(graph: Graph, *labels: str) -> None:
-    """Special points whose problem is not at hand, before work starts: a sentence that says why, and a way out."""
+    """Raise a ValueError, before any work, if a special point has no problem attached; the message gives reason and remedy."""
     from ..problems.registry import without_problem
 
     for label in labels:
@@ -222,13 +234,13 @@ def refuse_detached(graph: Graph, *labels: str) -> None:
 
 
 def refuse_unfinished(graph: Graph | Chart, file: Path) -> None:
-    """Work on a result begins when that is finished."""
+    """Raise a ValueError if the run that makes a result is unfinished."""
     if not graph.finished:
         raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
 
 
 def say_state(graph: Graph | Chart, file: Path, problems: bool = True) -> None:
-    """Branches that were loaded as numbers only, and why; whether the run goes on."""
+    """Print which branches were loaded as numbers only, and why, and whether the run is unfinished."""
     from ..graph import Graph
     from ..problems.registry import without_problem
 
@@ -243,7 +255,7 @@ def say_state(graph: Graph | Chart, file: Path, problems: bool = True) -> None:
 
 
 def tell(found: object, data: object = None) -> None:
-    """Print a result: one JSON object where there is `data`, else as text."""
+    """Print a result: `data` as one JSON object if given, otherwise `found` as text."""
     if data is None:
         typer.echo(str(found))
         return
@@ -253,7 +265,7 @@ def tell(found: object, data: object = None) -> None:
 
 
 def tell_result(found: Graph | Chart, file: Path, details: bool) -> None:
-    """What matters most of a result first; then its tables where they are short, or are asked for."""
+    """Print the summary of a result, then its tables if they are short or `details` is true."""
     from ..graph import Graph
 
     size = len(found.branches if isinstance(found, Graph) else found.loci)
@@ -280,13 +292,13 @@ def tell_result(found: Graph | Chart, file: Path, details: bool) -> None:
 
 
 def present(found: Any, json: bool, plot: Path | None, size: tuple[float, float] | None) -> None:
-    """Print a result that has a text, ``to_dict`` and ``plot``, and draw it where a picture is wanted."""
+    """Print a result as text or (by its ``to_dict``) as JSON, and draw it by its ``plot`` if a picture is wanted."""
     tell(found, found.to_dict() if json else None)
     draw(plot, lambda: found.plot(figsize=size), json)
 
 
 def draw(plot: Path | None, figure: Callable[[], Any], quiet: bool = False) -> None:
-    """Draw a picture where one is wanted, and say where it is."""
+    """Draw and save a picture, if one is wanted, and print its path."""
     if plot is not None:
         from ..plots.figures import save_figure
 

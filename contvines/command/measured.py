@@ -1,4 +1,4 @@
-"""Numbers beside a measurement: columns of a CSV in the units that their heads name, and what is computed in the units of a study, as a table, a CSV and a picture."""
+"""Measured data (CSV columns with units in their heads), and computed results in the units of a study, as table, CSV and picture."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ if TYPE_CHECKING:
 
 
 _UNIT = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/]+)$")
-STANDARD_GRAVITY = 9.80665  # m/s^2; in the head of an acceleration, g is this and no gram
+STANDARD_GRAVITY = 9.80665  # m/s^2: the unit g in the head of an acceleration, which is not the gram there
 
 
 def measured(path: Path, wanted: Mapping[str, str]) -> list[np.ndarray]:
-    """The columns of a CSV, each in the unit that is wanted.
+    """Read the columns of a CSV file, converted to the units of a study.
 
     Parameters
     ----------
     path : Path
     wanted : mapping
-        What each column is, in words ("time"), and the unit in which it is returned, and counted where its head names none; "" for a plain number.
+        Unit of each returned column by its meaning in words ("time"), also the unit of columns whose heads name none; "" for a plain number.
 
     Raises
     ------
     ValueError
-        If a row cannot be read, or a head names a unit of something else.
+        If a row cannot be read, or a head names a unit of another dimension.
     """
     from orbits.design.columns import read_table
 
@@ -72,33 +72,34 @@ def _factor(place: str, head: str, what: str, unit: str) -> float:
 
 
 Rows = list[tuple[str, float, str, str]]
-"""Name, value, unit (or kind of measure) and words of each figure."""
+"""Name, value, unit (or kind of measure) and description of each number."""
 Series = list[tuple[str, str, "np.ndarray"]]
 """Name, unit (or kind of measure) and values of each column."""
 
 
 @dataclass(frozen=True)
 class Scales:
-    """What the dimensionless numbers of a machine are in the units that its study shows.
+    """Conversion of a machine's dimensionless numbers to the units of its study.
 
     Attributes
     ----------
     model : Varying
     params : float array (P,)
+        Values of the machine's parameters.
     """
 
     model: Varying
     params: np.ndarray
 
     def factor(self, kind: str) -> float:
-        """One dimensionless unit of a kind of measure; kinds are those of `orbits.machines.varying.Varying.gauge`."""
+        """Return the size of one dimensionless unit of a kind of measure; kinds are those of `orbits.machines.varying.Varying.gauge`."""
         one = float(self.model.gauge(kind, self.params))
-        if kind in ("energy", "power"):  # those of the oscillator
+        if kind in ("energy", "power"):  # relative to the oscillator's mass, not the absorber's
             one /= float(self.params[self.model.parameter_names.index("mass_ratio")])
         return one
 
     def unit(self, kind: str) -> str:
-        """The unit of a kind of measure; "" for a plain number."""
+        """Return the unit of a kind of measure; "" for a plain number."""
         from orbits.machines.physical.machine import Physical
 
         if not isinstance(self.model, Physical):
@@ -107,29 +108,29 @@ class Scales:
         return units.unit_of(quantity) if quantity else ""
 
     def number(self, option: str, text: str, kind: str) -> float:
-        """The dimensionless number of what an option says, a quantity with a unit where there are units."""
+        """Convert the text of an option, with a unit if the study has units, to a dimensionless number."""
         return units.counted(option, text, self.unit(kind)) / self.factor(kind)
 
     def rows(self, rows: Rows) -> Rows:
-        """Figures with their values and units, from dimensionless ones with the kind of measure that each is."""
+        """Convert rows of dimensionless numbers, with kinds of measures in place of units, to the units of the study."""
         return [
             (name, float(value) * self.factor(kind), self.unit(kind), words)
             for name, value, kind, words in rows
         ]
 
     def columns(self, series: Series) -> Series:
-        """The same of columns."""
+        """Convert columns likewise."""
         return [(name, self.unit(kind), values * self.factor(kind)) for name, kind, values in series]
 
     @property
     def metre(self) -> float:
-        """Metres in one dimensionless length; 1 where there are no units."""
+        """Size of the dimensionless unit of length in metres; 1 for a study without units."""
         unit = self.unit("length")
         return self.factor("length") * ((units.size(unit, "m") or 1.0) if unit else 1.0)
 
 
 def written(path: Path | None, series: Series, quiet: bool) -> None:
-    """Columns as a CSV, where one is wanted."""
+    """Write columns as a CSV file, if a path is given."""
     if path is None:
         return
     heads = [with_unit(name, unit) for name, unit, _ in series]
@@ -151,7 +152,7 @@ class Told:
     hits : float array
         Times of impacts.
     drawn : int, optional
-        How many of the series the picture has.
+        Number of series in the picture.
     """
 
     title: str
@@ -161,7 +162,7 @@ class Told:
     drawn: int | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Names and values, and their units."""
+        """Return the numbers by name, and their units, ready for JSON."""
         units = {name: unit for name, _, unit, _ in self.rows if unit}
         return {**{name: value for name, value, _, _ in self.rows}, **({"units": units} if units else {})}
 
@@ -170,14 +171,14 @@ class Told:
         return titled(self.title, Table(("figure", "value", "unit", "what it is"), rows))
 
     def plot(self, figsize: tuple[float, float] | None = None) -> Figure:
-        """The motion, or the energy, with the absorber and without; impacts as ticks."""
+        """Plot the motion, or the energy, with and without the absorber; impacts are marked as ticks."""
         from ..plots.measured import plot_transient
 
         return plot_transient(self.series[: self.drawn], self.hits, figsize=figsize)
 
 
 def loads_rows(impulse: float, impacts: int, contact_time: float | None, shown: Mapping[str, str]) -> Rows:
-    """Rows of the hardest impact, an impulse in the study's unit."""
+    """Return the rows about the hardest impact, whose impulse is in the study's unit."""
     if not impacts:
         return []
     rows = [("impulse", impulse, shown.get("impulse", ""), "largest impulse of an impact")]

@@ -1,4 +1,4 @@
-"""Arguments and options that several verbs share, how one is written, as its line in the help, and values of parameters on the line: numbers in the file's units, or quantities."""
+"""Arguments and options common to several commands, their declaration, and the parsing of parameter values (numbers or quantities)."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from typer.core import TyperOption
 
 
 def option(usage: str, help: str, **further: Any) -> Any:
-    """An option of a verb.
+    """Declare an option of a command.
 
     Parameters
     ----------
     usage : str
-        Its names and what stands behind them, as in ``"-o, --output FILE.csv"``.
+        Its names and its value as the help shows them, for example ``"-o, --output FILE.csv"``.
     help : str
     **further
-        As of `typer.Option`.
+        Arguments of `typer.Option`.
     """
     words = usage.split()
     names = [word.rstrip(",") for word in words if word.startswith("-")]
@@ -29,12 +29,12 @@ def option(usage: str, help: str, **further: Any) -> Any:
 
 
 def argument(metavar: str, help: str) -> Any:
-    """An argument of a verb, and its name in the help."""
+    """Declare an argument of a command; `metavar` is its name in the help."""
     return typer.Argument(metavar=metavar, help=help)
 
 
 def given(context: typer.Context) -> dict[str, str]:
-    """Options of a line that say something else than their defaults, as they are written there, with their values."""
+    """Return the options that were given with other values than their defaults, as written on the command line, and their values."""
     found = {}
     for known in context.command.params:
         value = context.params.get(str(known.name))
@@ -46,13 +46,13 @@ def given(context: typer.Context) -> dict[str, str]:
 
 
 def refuse_alone(context: typer.Context, **needed: str) -> None:
-    """Refuse options that go with another one where this one is missing.
+    """Raise an error for options that need another option which is missing.
 
     Parameters
     ----------
     context : typer.Context
     **needed : str
-        Name of an option without its dashes -> the option that it goes with.
+        Name of an option without its dashes -> the option that it needs.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def refuse_alone(context: typer.Context, **needed: str) -> None:
 
 
 def picture(path: Path | None) -> Path | None:
-    """Refuse, before any work, a picture that could not be written. Kept apart from matplotlib."""
+    """Check, before any work and without matplotlib, that a picture can be written; return its path."""
     if path is not None:
         from ..plots.figures import check_picture
 
@@ -76,7 +76,7 @@ def picture(path: Path | None) -> Path | None:
 
 
 def inches(size: tuple[float, float] | None) -> tuple[float, float] | None:
-    """Refuse, before any work, a size that is no picture's."""
+    """Check, before any work, that a size is possible for a picture; return it."""
     if size is not None:
         from ..plots.figures import check_size
 
@@ -108,7 +108,7 @@ FreshOption = Annotated[
         "--fresh", "Begin again; an existing result is renamed, for example FILE.vines to FILE.old.vines."
     ),
 ]
-MANY = 30  # branches or loci; of a larger result a summary is printed alone
+MANY = 30  # number of branches or loci above which only a summary of a result is printed
 DetailsOption = Annotated[
     bool,
     option("--details", f"Print the whole tables, even if there are more than {MANY} branches (or loci)."),
@@ -124,7 +124,7 @@ VirtualOption = Annotated[
 
 
 class Beside(StrEnum):
-    """What a response is compared with; as `orbits.design.references` has them."""
+    """Machines with which a response is compared, as in `orbits.design.references`."""
 
     bare = "bare"
     tuned = "tuned"
@@ -149,23 +149,23 @@ YOption = Annotated[
 
 
 def amount(option: str, text: str, name: str, units: Mapping[str, str]) -> float:
-    """A value of a parameter, counted in the file's unit.
+    """Parse a value of a parameter and convert it to the file's unit.
 
     Parameters
     ----------
     option : str
-        With which it was given, for refusals.
+        Option with which it was given, for error messages.
     text : str
-        ``"7.9"``, or ``"7.9 Hz"`` where the parameter has a unit.
+        ``"7.9"``, or ``"7.9 Hz"`` if the parameter has a unit.
     name : str
         Of the parameter.
     units : mapping
-        Units by name of parameter; those without one are missing.
+        Units of parameters by name, without those of plain numbers.
 
     Raises
     ------
     ValueError
-        If it is neither; the sentence says the way out.
+        If the text is neither; the message suggests a remedy.
     """
     try:
         value = float(text)
@@ -189,7 +189,7 @@ def amount(option: str, text: str, name: str, units: Mapping[str, str]) -> float
 def inside(
     option: str, text: str, name: str, within: tuple[float, float], units: Mapping[str, str], owner: str
 ) -> float:
-    """A value of a parameter inside the interval of a study or a file.
+    """Parse a value of a parameter, which must lie in the interval of a study or a file.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def inside(
     within : (float, float)
         The interval.
     owner : str
-        The name of the interval, for refusals, as ``"[continue] within"``.
+        Name of the interval for error messages, for example ``"[continue] within"``.
 
     Raises
     ------
@@ -218,7 +218,7 @@ def inside(
 
 
 def interval(option: str, ends: tuple[str, str], name: str, units: Mapping[str, str]) -> tuple[float, float]:
-    """Both ends of an interval, the lower one first.
+    """Parse both ends of an interval, the lower one first.
 
     Raises
     ------

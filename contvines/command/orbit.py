@@ -1,4 +1,4 @@
-"""`contvines orbit` and `prove`: one orbit of a stored graph, or the start of a study, shown, and theorems about orbits, with certificates."""
+"""`contvines orbit` and `prove`: show one orbit of a graph or the first orbit of a study; prove theorems about orbits, with certificates."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..text_table import fitted
 from .frame import draw, held, interruptible, load_file, point_of, say, tell
 from .options import JsonOption, PlotOption, TrustOption, argument, interval, option
 
-# which measure's unit an event's number has
+# kind of measure that gives the unit of each number of an event
 EVENTS = {
     "B_pre": "B_pre",
     "B_post": "B_post",
@@ -24,7 +24,7 @@ EVENTS = {
     "v": "max_abs_w",
     "v_rate": "B",
 }
-MANY = 2000  # boxes: checking more of them is announced
+MANY = 2000  # number of boxes above which the check is announced, as it takes long
 
 
 def orbit(
@@ -91,7 +91,7 @@ def _orbit(file: Path, label: str | None, trust: bool) -> object:
 
 
 def _first_orbit(file: Path, label: str | None) -> tuple[Any, tuple[float, float]]:
-    """The start of a study and its interval; a label is refused."""
+    """Return the first orbit of a study and the study's interval; raise a ValueError if a label is given."""
     from .compose import first_orbit
     from .study import read_study
 
@@ -102,7 +102,7 @@ def _first_orbit(file: Path, label: str | None) -> tuple[Any, tuple[float, float
 
 
 def _solution(start: object, within: tuple[float, float]) -> object:
-    """The start of a study: an orbit as it is; of a problem (equilibria, cycles of maps) its first solution."""
+    """Return the first solution of a study: its orbit, or the solution of its problem (equilibrium, cycle of a map)."""
     from ..problems.abilities import Started
 
     if not isinstance(start, Started):
@@ -123,7 +123,7 @@ def _plain(found: Any) -> dict[str, Any]:
 
 
 def _describe(about: dict[str, Any]) -> str:
-    """An orbit as a readable text, from what --json prints."""
+    """Describe an orbit as text, from the data that --json prints."""
     from ..graph.table import short_word, with_unit
     from ..shared.motions import marginal_text
     from ..text_table import Table, terminal_width
@@ -267,7 +267,7 @@ def _of_file(
 
 
 def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
-    """The certificates kept in a file, by label."""
+    """Return the certificates stored in a file, by label."""
     from ..shared.files import is_database
     from ..store import printable
 
@@ -277,7 +277,7 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
     else:
         try:
             found = json_.loads(file.read_text(encoding="utf-8"))
-        except (ValueError, RecursionError):  # no JSON, thousands of digits, lists in lists without end
+        except (ValueError, RecursionError):  # no JSON, huge numbers, or lists nested too deeply
             raise ValueError(f"{file}: this is neither a .vines file nor a file of certificates.") from None
         if isinstance(found, dict) and "format" in found:
             found = {"certificate": found}
@@ -323,7 +323,7 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
 
 
 def _boxes(certificate: object) -> int:
-    """How many boxes a certificate, or those of a branch's stretches, have; none if it is no certificate."""
+    """Return the number of boxes in a certificate, or in those of a branch's stretches; 0 if it is no certificate."""
     if isinstance(certificate, list):
         return sum(_boxes(one) for one in certificate if isinstance(one, dict))
     boxes = certificate.get("boxes") if isinstance(certificate, dict) else None
@@ -331,7 +331,7 @@ def _boxes(certificate: object) -> int:
 
 
 def _claims(certificate: object) -> object:
-    """What a certificate claims; of a branch the claims of its stretches in turn."""
+    """Return the claim of a certificate; for a branch the list of its stretches' claims."""
     if isinstance(certificate, list):
         return [_claims(one) for one in certificate]
     return certificate["claims"] if isinstance(certificate, dict) else None

@@ -1,7 +1,7 @@
-"""A study of a machine that comes as a page with the package (`coupled_two`), or of what a Python file beside it declares: `[model] name = "file.py:name"`, a machine (a page) or a contvines.FlowProblem.
+"""Studies of declared machines (pages): one that comes with the package (`coupled_two`), or one of a Python file; and studies of flows.
 
-The file is run when the study is read: the user has named it. It lies in the study's folder or below, so that a study runs nothing that
-has not come with it.
+A study names a Python file by `[model] name = "file.py:name"`; `name` is a machine or a contvines.FlowProblem. The file is run when the
+study is read. It must lie in the study's folder or below, so that a study runs only code that came with it.
 """
 
 from __future__ import annotations
@@ -28,11 +28,14 @@ F = TypeVar("F", PageSections, FlowSections)
 
 
 def read_own(data: dict[str, Any], path: Path) -> Study:
-    """A study whose `[model]` names a Python file.
+    """Check a study whose `[model]` names a Python file or a page of the package.
 
     Raises
     ------
-    StudyError, OSError
+    StudyError
+        If a value is invalid.
+    OSError
+        If the file cannot be read.
     """
     from orbits.machines.page.machine import Machine
 
@@ -68,7 +71,7 @@ def _section(data: dict[str, Any], name: str) -> dict[str, Any]:
 
 
 def _structure(data: dict[str, Any], path: Path) -> tuple[Machine, dict[str, Any]]:
-    """The structure of a study, and the study without its matrices and elements."""
+    """Return the structure that a study describes, and the study without its matrices and elements."""
     from orbits.machines.parameters import ParameterError
     from orbits.machines.structure import GIVEN, MATRICES, MEANT, structure
 
@@ -93,7 +96,7 @@ def _structure(data: dict[str, Any], path: Path) -> tuple[Machine, dict[str, Any
 
 
 def _values(base: type[F], known: Mapping[str, float], data: dict[str, Any]) -> tuple[F, dict[str, float]]:
-    """The checked sections, and the values that they give to parameters.
+    """Check the sections of a study; return them and the values of the parameters.
 
     Raises
     ------
@@ -127,18 +130,18 @@ def _flow(data: dict[str, Any], path: Path, flow: FlowProblem) -> Study:
     elif box is not None and not all(low < high for low, high in box):
         wrong.append(f"[start] box = {box!r}: each pair is (low, high), low < high.")
     refuse(wrong)
-    # of charts, and of the look after a diagram, as well
+    # the box is also used by charts and by the brief search after a diagram
     flow.box = None if box is None else [(low, high) for low, high in box]
     return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
 
 
 def _counted(data: dict[str, Any], machine: Machine) -> dict[str, Any]:
-    """A study of a machine with units in which quantities, as `"15 mm"`, are numbers in these units.
+    """Convert the quantities (texts such as `"15 mm"`) in a study of a machine with units to numbers in these units.
 
     Raises
     ------
     StudyError
-        If a quantity is of another kind.
+        If a quantity has a unit of another dimension.
     """
     from orbits.machines.physical.units import QuantityError, counted
 
@@ -220,7 +223,7 @@ def _page(data: dict[str, Any], path: Path, machine: Machine) -> Study:
 
 # ---------------------------------------------------------------------- Python files
 def own_code(study: Path, file: str, place: str) -> Path:
-    """A Python file that a study names, in the study's folder or in a folder inside it.
+    """Return the path of a Python file that a study names, in the study's folder or below.
 
     Parameters
     ----------
@@ -229,12 +232,12 @@ def own_code(study: Path, file: str, place: str) -> Path:
     file : str
         As the study names it.
     place : str
-        The field of the study with its value, for the refusal.
+        The field of the study with its value, for the error message.
 
     Raises
     ------
     ValueError
-        If the name leads out of the study's folder. (A link in the folder may lead out: somebody has put it there.)
+        If the path leads out of the study's folder. (A symbolic link in the folder may lead out: the user has made it.)
     """
     name = Path(file)
     if name.is_absolute() or ".." in name.parts:
@@ -246,18 +249,18 @@ def own_code(study: Path, file: str, place: str) -> Path:
 
 
 def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
-    """The built-in kinds with those of a file beside the study, and a digest of the file; the file is run.
+    """Run a Python file beside the study, and return the built-in kinds of special points with those of the file, and the file's digest.
 
     Parameters
     ----------
     study : Path
     said : str
-        File and name, ``kinds = "file.py:name"`` in [continue]; the name is that of a :class:`contvines.Kind`, or of a list of them.
+        File and name, from ``kinds = "file.py:name"`` in [continue]; the name is that of a :class:`contvines.Kind` or of a list of them.
 
     Raises
     ------
     ValueError
-        If there is no such file beside the study, it does not run, or has no kinds of that name.
+        If there is no such file, it raises an error, or has no kinds with that name.
     """
     from ..bifurcation.kind import Kind
     from ..bifurcation.kinds import KINDS, checked

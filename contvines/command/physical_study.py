@@ -1,7 +1,7 @@
-"""A study in physical units: `units = "si"`, and quantities as text.
+"""Studies in physical units: `units = "si"`, and quantities as texts.
 
-The quantities make a machine (`orbits.machines.physical`); intervals and values of whatever varies become numbers, counted in the unit
-in which the machine's quantity was given. What is left is a study like any other.
+The quantities define a machine (`orbits.machines.physical`). Intervals and values of a varied quantity are converted to numbers in the
+unit in which the machine's quantity is given; the rest is treated as in other studies.
 """
 
 from pathlib import Path
@@ -23,11 +23,12 @@ SAID = ("word", "periods", "guess")
 
 
 def read_physical(data: dict[str, Any], path: Path) -> Study:
-    """A study in physical units.
+    """Check a study in physical units.
 
     Raises
     ------
     StudyError
+        If a value is invalid.
     """
     model, start = data.get("model"), data.get("start", {})
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
@@ -53,7 +54,10 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
 def _machine(
     said: object, model: dict[str, Any], start: dict[str, Any], go: object
 ) -> tuple[Physical | None, list[str]]:
-    """The machine of `[model]` and `[start]`, counted in the unit of what `[continue]` varies; None where it cannot be made; and what is wrong."""
+    """Return the machine of `[model]` and `[start]` (None if it cannot be made) and all errors.
+
+    The quantity that `[continue]` varies is in the unit of its interval.
+    """
     if said != "si":
         return None, [f'units = {said!r} is unknown; use "si", or leave it out.']
     name = str(model.get("name"))
@@ -72,7 +76,7 @@ def _machine(
     said_already = {known[key].choice for key in (*model, *start) if key in known}
     if over is not None and "word" not in start and over.choice not in said_already:
         start = {**start, over.name: _middle(over, go)}
-    # [start] replaces what [model] says of the same thing
+    # quantities in [start] replace those of the same choice in [model]
     groups = {known[key].choice for key in start if key in known}
     places = {key: "model" for key in model if key in known and known[key].choice not in groups}
     places |= {key: "start" for key in start if key in known}
@@ -92,12 +96,12 @@ def _parameter(section: object) -> str | None:
 
 
 def _middle(quantity: Quantity, go: object) -> object:
-    """The middle of the interval of `[continue]` as a quantity in the unit of its lower end; what stands there where it is no interval.
+    """Return the middle of the interval of `[continue]` as a quantity in the unit of its lower end; an invalid interval is returned unchanged.
 
     Raises
     ------
     QuantityError
-        If an end is no such quantity.
+        If an end is no quantity of this kind.
     """
     within = go.get("within") if isinstance(go, dict) else None
     if not isinstance(within, list) or len(within) != 2:
@@ -111,9 +115,9 @@ def _middle(quantity: Quantity, go: object) -> object:
 def _numbers(
     machine: Physical | None, section: str, values: dict[str, Any], usual: str | None, wrong: list[str]
 ) -> dict[str, Any]:
-    """A section with numbers in place of quantities; the machine tells them by the quantity that varies. Refusals are added to what is wrong.
+    """Convert the quantities in a section to numbers in the machine's unit of the varied quantity; add error messages to `wrong`.
 
-    Without a machine, or where they are refused, numbers that nothing is wrong with stand in their place, so that these are refused once.
+    Without a machine, or for invalid quantities, valid dummy numbers are inserted, so that each error is reported once.
     """
     changed, bounds = dict(values), values.get("bounds")
     lists = {key: values[key] for key in ("within", "values") if isinstance(values.get(key), list)}
@@ -143,7 +147,7 @@ def _numbers(
             f"{near_quantity(name, known)}; it has {', '.join(known)}."
         )
         changed["within"] = [0.0, 1.0]
-    if isinstance(bounds, dict):  # plain numbers are counted in the units in which measures are shown
+    if isinstance(bounds, dict):  # plain numbers are in the displayed units of the measures
         changed["bounds"] = {}
         for measure, pair in bounds.items():
             changed["bounds"][measure] = list(pair) if isinstance(pair, list) else pair
@@ -159,14 +163,23 @@ def _numbers(
 
 
 def number_of(machine: Physical, name: str, value: object, place: str, spread: bool = False) -> object:
-    """A value of quantity `name` counted in the machine's unit of it.
+    """Convert a value of the quantity `name` to a number in the machine's unit.
 
-    A `spread` of values, their deviation, may be as small as it likes. What is neither text nor a number is left to others to refuse.
+    Parameters
+    ----------
+    machine : Physical
+    name : str
+    value : object
+        A text with a unit, or a number; other types are returned unchanged, for later checks.
+    place : str
+        Beginning of the error message.
+    spread : bool
+        Whether the value is a standard deviation, which has no lower limit.
 
     Raises
     ------
     QuantityError
-        A sentence that begins with the place.
+        If the value is invalid.
     """
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         return value

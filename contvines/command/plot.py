@@ -1,4 +1,4 @@
-"""`contvines plot`: pictures of a stored graph, and lines to compare a response with: the bare oscillator, a tuned absorber of the same mass, a friction damper."""
+"""`contvines plot`: pictures of a stored graph, and responses for comparison: bare oscillator, tuned absorber of equal mass, friction damper."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ POINTS = 600
 
 
 class Picture(StrEnum):
-    """What `plot` draws."""
+    """Pictures that `plot` can draw."""
 
     diagram = "diagram"
     multipliers = "multipliers"
@@ -62,7 +62,7 @@ DRAWS = {
 
 
 class Colors(StrEnum):
-    """What a colour of a diagram stands for."""
+    """Meanings that the colours of a diagram can have."""
 
     branch = "branch"
     word = "word"
@@ -168,7 +168,7 @@ def plot(
 def compared(
     graph: Graph, kinds: Sequence[str] | None, x: str | None = None, y: str | None = None, **options: Any
 ) -> Figure:
-    """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
+    """Draw a graph with the responses for comparison; options as for `contvines.plots.diagram.plot_diagram`."""
     from ..plots.diagram import draw_diagram, plot_diagram
     from ..shared.figures import drawing
 
@@ -182,12 +182,12 @@ def compared(
 
 
 def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None, y: str | None) -> None:
-    """Draw the lines on axes on which the graph is drawn next.
+    """Draw the responses for comparison on the axes of a graph's picture, before the graph itself.
 
     Raises
     ------
     ValueError
-        If the graph shows no response of an oscillator over its parameter.
+        If the picture does not show the response of an oscillator over the graph's parameter.
     """
     from orbits.problem import OrbitProblem
 
@@ -217,19 +217,19 @@ def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None,
 
 
 def response_of(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
-    """The response of a kind at some parameters (m, P), in the machine's unit, shape (m,)."""
+    """Return the response of a machine for comparison at parameter vectors (m, P), in the machine's unit, shape (m,)."""
     return reference(kind, model, params) * model.gauge("length", params)
 
 
 def peaks_compared(
     model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]
 ) -> dict[str, tuple[float, float]]:
-    """The largest response of each kind over an interval of a parameter, and where, in the machine's units.
+    """Return the largest response of each machine for comparison over an interval of a parameter, and its place, in the machine's units.
 
     Raises
     ------
     ValueError
-        If the machine is declared: it has no closed forms.
+        If the machine is declared: there are no closed forms then.
     """
 
     if not isinstance(model, Model):
@@ -242,7 +242,7 @@ def peaks_compared(
     found, whole = {}, grid(*within)
     for kind in kinds:
         values, params = whole
-        for narrower in (True, True, False):  # between the neighbours of the largest
+        for narrower in (True, True, False):  # refine the grid between the neighbours of the maximum
             response = response_of(kind, model, params)
             place = int(response.argmax())
             found[kind] = float(response[place]), float(values[place])
@@ -252,7 +252,7 @@ def peaks_compared(
 
 
 def compared_text(model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
-    """The largest responses to compare with, as a sentence."""
+    """Describe the largest responses of the machines for comparison in one sentence."""
     unit, place = model.units.get(SHOWN[0], ""), model.units.get(over, "")
     said = [
         f"{NAMES[kind]} {figures(peak)} {unit} at {over} = {figures(at)} {place}".replace("  ", " ").rstrip()

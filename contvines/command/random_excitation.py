@@ -1,4 +1,4 @@
-"""`contvines random STUDY.toml`: the answer to a random excitation by its spectral density, beside the bare and the tuned machine."""
+"""`contvines random STUDY.toml`: response to a random excitation with a given spectral density, compared with the bare and the tuned machine."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Found:
     title : str
     rows : list of (name, value, standard error, unit, words)
     series : list of (name, unit, float array)
-        Frequencies, and the densities of the responses.
+        Frequencies, and the spectral densities of the responses.
     """
 
     title: str
@@ -89,7 +89,7 @@ class Found:
     series: Series
 
     def to_dict(self) -> dict[str, Any]:
-        """Values and standard errors by name, and their units."""
+        """Return values and standard errors by name, and their units, ready for JSON."""
         return {
             **{name: {"value": value, "error": error} for name, value, error, _, _ in self.rows},
             "units": {name: unit for name, _, _, unit, _ in self.rows if unit},
@@ -100,7 +100,7 @@ class Found:
         return titled(self.title, Table(("figure", "value", "+-", "unit", "what it is"), rows))
 
     def plot(self, figsize: tuple[float, float] | None = None) -> Figure:
-        """The densities over the frequency."""
+        """Plot the spectral densities over the frequency."""
         from ..plots.measured import plot_densities
 
         (_, hertz, frequencies), *densities = self.series
@@ -109,7 +109,7 @@ class Found:
 
 
 def _rounded(value: float, error: float) -> tuple[str, str]:
-    """A number to the second digit of its error, and the error."""
+    """Format a number to the second digit of its error, and the error."""
     if not (error > 0.0 and math.isfinite(error)) or error < Settings.located * abs(value):
         return figures(value), "" if math.isnan(error) else "0"
     digits = max(2, min(6, math.ceil(math.log10(max(abs(value), error) / error)) + 2))
@@ -138,7 +138,7 @@ def _computed(study: Study, seed: int | None) -> Found:
         "seed": said.seed if seed is None else seed,
     }
     shown, scales = model.units, Scales(model, params)
-    turn = 2.0 * math.pi if shown else 1.0  # densities are counted per hertz where there are units
+    turn = 2.0 * math.pi if shown else 1.0  # densities are per hertz if the study has units
     rate = 1.0 if page else 1.0 / scales.factor("time")
     try:
         if said.parameter is not None:
@@ -152,7 +152,7 @@ def _computed(study: Study, seed: int | None) -> Found:
         raise ValueError(f"{study.path}: [random] {str(error).rstrip('.')}.") from None
 
     def length(name: str) -> tuple[float, str]:
-        """One unit of a response, and that unit's name."""
+        """Return the factor from a dimensionless response to the study's unit, and the unit's name."""
         return (1.0, shown.get(name, "")) if page else (scales.factor("length"), scales.unit("length"))
 
     rows = []

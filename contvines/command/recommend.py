@@ -1,4 +1,4 @@
-"""`contvines recommend STUDY.toml`: a clearance, how tolerant it is, what it brings and costs, and its picture."""
+"""`contvines recommend STUDY.toml`: recommend a clearance with its tolerance, benefits and costs, and draw the pictures."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
 SIZE, REPORT = (10.0, 4.0), (9.0, 3.4)  # inches
-PART = 0.6  # of the height for the start-up
-ROOM = 1.3  # of the vertical axis beside the largest number: for the legend
+PART = 0.6  # height of the start-up's picture, relative to the others
+ROOM = 1.3  # upper end of the vertical axis relative to the largest number, which leaves space for the legend
 
 
 def recommend(
@@ -82,7 +82,7 @@ def recommend(
 def recommended(
     read: Study, place: Path, cost: float, target: float | None, workers: int | None, quiet: bool
 ) -> Recommendation:
-    """The recommendation for a study: from its file if that is finished, else computed; rows of an unfinished one are kept beside it."""
+    """Return the recommendation for a study, from its file if that is finished, otherwise computed, with journals of the rows beside the file."""
     from ..export import json_text
     from .recommending import digest
     from .recommending import recommend as run
@@ -115,12 +115,12 @@ def recommended(
 
 
 def kept(place: Path) -> dict[str, Any]:
-    """What a file of this command holds.
+    """Read a result file of this command.
 
     Raises
     ------
     ValueError
-        If it is another file.
+        If it is a file of another kind.
     """
     try:
         found = json.loads(place.read_text(encoding="utf-8"))
@@ -144,7 +144,7 @@ def _target(text: str, study: Study) -> float:
 
 
 def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
-    """Both panels, one above the other in a narrow picture; where nothing was chosen the first alone."""
+    """Draw both panels, one above the other in a narrow picture; only the first one if nothing was chosen."""
     from ..plots.legends import NARROW
     from ..shared.figures import new_figure, settle, styled, thin_ticks
 
@@ -167,7 +167,7 @@ def _label(found: Recommendation, name: str, text: str) -> str:
 
 
 def draw_places(axes: Axes, found: Recommendation) -> None:
-    """The worst response over the value that is chosen."""
+    """Draw the worst response over the parameter that is chosen."""
     from .plot import LOOKS
 
     first = [p for p in found.places if p.samples < found.most or found.most == 1]
@@ -212,7 +212,7 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
 
 
 def draw_responses(axes: Axes, found: Recommendation) -> None:
-    """The responses at the choice beside those to compare with."""
+    """Draw the responses at the choice and those of the machines for comparison."""
     from orbits.design.references import NAMES
 
     from .plot import LOOKS
@@ -240,7 +240,7 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
 
 
 def report_pictures(found: Recommendation) -> list[tuple[Figure, str]]:
-    """The pictures of the report with their captions."""
+    """Return the pictures of the report with their captions."""
     import numpy as np
 
     from ..plots.measured import plot_transient
