@@ -234,7 +234,7 @@ class FirstClearance:
 
 
 def first_clearance(model: Model, params: np.ndarray) -> FirstClearance | None:
-    """Return half-widths by theory; None for a machine without oscillator or damping, with an inclined cavity, or with elastic or perfectly inelastic walls.
+    """Return half-widths by theory; None for a machine without oscillator, damping or forcing, with an inclined cavity, or with elastic walls.
 
     With F/k = eps G and 2 D = eps lambda/sqrt(1 + eps) the linear peak is F/(2 D k) = G sqrt(1 + eps)/lambda half-widths; as a length
     it does not depend on the half-width. Friction is neglected.

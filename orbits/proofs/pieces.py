@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BITS = 192  # precision
 FIRST = 1 / 16  # width of the first tile, relative to the piece
-ROOM = 0.8  # enlargement of a tile's radii when its verdicts are computed, so that another arithmetic confirms them
+ROOM = 0.8  # relative enlargement of a tile's radii when its stability is decided, so that another arithmetic confirms it
 GRADE = 0.35  # largest width of a tile, relative to its distance from a special point
 
 

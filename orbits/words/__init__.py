@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def least_rotation(items: Sequence[Any]) -> int:
-    """Index at which the smallest rotation of a cyclic sequence begins (the first such index); linear time."""
+    """Smallest index at which the smallest rotation of a cyclic sequence begins; linear time."""
     n, i, j, k = len(items), 0, 1, 0
     while i < n and j < n and k < n:
         a, b = items[(i + k) % n], items[(j + k) % n]

@@ -286,7 +286,7 @@ def read(
 
 
 def _from_maps(source: str, alphabet: Alphabet) -> str:
-    """Convert maps between impacts, such as ``G_LR G_RL``, to events; other text is returned without blanks and commas changed to blanks."""
+    """Convert maps between impacts, such as ``G_LR G_RL``, to events; in other text only commas are replaced by blanks and ``G_`` is removed."""
     tokens = [token.removeprefix("G_") for token in source.replace(",", " ").split()]
     maps = len(tokens) > 1 and all(re.fullmatch("[LR]{2}", token) for token in tokens)
     if not maps or any(one[1] != other[0] for one, other in zip(tokens, tokens[1:] + tokens[:1])):

@@ -1,4 +1,4 @@
-"""Every part of the benchmark runs, and all competitors find the same branch. Nothing here is timed."""
+"""Every part of the benchmarks runs, and all programs compute the same branch. Times are not tested."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ needs_compiler = pytest.mark.skipif(library() is None, reason="no C compiler")
 
 
 def exact_amplitude(u):
-    """Amplitude of the symmetric orbit from the speed after its first impact (closed form)."""
+    """Amplitude of the symmetric orbit as a closed form of the speed after its first impact."""
     r, mu, g, eps, omega = case.PARAMS[1:]
     beta = (u[..., 1] - 0.5 * np.pi * (1.0 + eps) * mu * g / omega) / omega
     C = [case.symmetric_orbit(b)[2] for b in np.atleast_1d(beta)]
@@ -135,7 +135,7 @@ def test_tables_print(capsys):
 
 
 def test_cycles_of_flows_reach_the_same_end():
-    """Parameter and period at the end of the branch, by each that can be run here."""
+    """Parameter and period at the end of the branch agree between all programs that are installed."""
     ends = {}
     for name, competitor in flows.competitors(40).items():
         _, points = competitor.run()

@@ -274,7 +274,7 @@ def _linearised(motion: Motion, nodes: list[Any], value: Any) -> tuple[list[Any]
         flow = difference([motion.step(here, i, node, time + part * small) for part in (1, -1)])
         late, *others = _at_event((missed, [a - b for a, b in zip(rest, wanted[1:])]), flow)
         gaps.append(mp.matrix([here.omega * late, *others]))
-        # the phase of an event changes with that of the one before, with the time between and with what the phase rate is
+        # the phase of an event depends on that of the one before, on the time between them and on the phase rate
         late, *others = _at_event(difference([motion.step(m, i, node, time) for m in (above, below)]), flow)
         rate = (above.omega - below.omega) / (2 * small)
         pushes.append(mp.matrix([here.omega * late + rate * time, *others]))

@@ -109,7 +109,7 @@ def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
 
 
 def _unresolved(point: Any) -> float:
-    """Change of the motion while the parameter changes by the point's stated error or its last bit; smaller differences mean nothing."""
+    """Change of the motion while the parameter changes by the point's stated error or its last bit; smaller differences of motions are not significant."""
     if point.kind == "fold":  # the parameter is stationary, and folds are located by the motion
         return 0.0
     along = np.asarray(point.tangent)

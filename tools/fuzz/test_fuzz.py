@@ -29,7 +29,7 @@ def test_a_short_search_finds_nothing(kind, seed):
 
 
 def test_a_pair_that_passes_the_circle_next_to_the_doubling_from_which_it_comes_about():
-    """The multiplier that has doubled and one beyond +1 become a pair: simulated, the motions are unstable up to where it passes."""
+    """A multiplier of a doubled orbit and one above +1 become a pair; simulations confirm that the orbits are unstable until the pair enters the circle."""
     assert not search("coupled", 112940, 325).findings
 
 
@@ -48,19 +48,19 @@ def test_the_same_seed_draws_the_same_machine():
 
 @pytest.fixture(scope="module")
 def graph():
-    """LR with a fold, its symmetry breaking, and borders where sticks and turns appear; the rest of LR beyond its border is kept."""
+    """Graph of LR with a fold, a symmetry breaking, and borders at which sticks and turns appear; LR continues beyond its border as virtual branch."""
     machine = ABSORBER
     orbit = machine.symmetric_orbit(amplitude=0.7)
     return cv.diagram(orbit, over="amplitude", within=(0.2, 0.92), depth=1, virtual=True)
 
 
 def changed(graph, **branches):
-    """The graph with some branches replaced."""
+    """Return the graph with some branches replaced."""
     return replace(graph, branches={**graph.branches, **branches})
 
 
 def checks(judge, *given):
-    """Names of the checks that find something."""
+    """Return the names of the checks with findings."""
     tally = Tally()
     judge(*given, tally) if judge is not simulated.judge else judge(*given, tally, np.random.default_rng(1))
     return {finding.check for finding in tally.findings}
@@ -170,7 +170,7 @@ def test_multipliers_of_no_simulation(graph):
 
 
 def test_motions(graph):
-    """A forcing period later, or twice through, it is the same motion; half a period later it is not."""
+    """A motion shifted by a forcing period, or repeated twice, is the same; shifted by half a period it is not."""
     orbit = word(graph, "LR").orbit(5)
     assert apart(orbit, orbit.repeat(3).rotate(2)) < 1e-12
     assert apart(orbit, orbit.mirror()) < 1e-12 < 1e-2 < apart(orbit, orbit.mirror(), images=False)
@@ -237,7 +237,7 @@ def test_multipliers_are_not_believed_for_want_of_digits(graph):
 
 
 def test_multipliers_that_do_not_grow_are_not_called_unbounded(graph):
-    """Beside the fold of LR they tend to 1, and where it is regular to those there."""
+    """Near the fold of LR multipliers tend to 1; at regular points they tend to those of the point."""
     branch = word(graph, "LR")
     orbits = [branch.orbit(i) for i in (2, 3)]
     assert not grow_without_bound(*orbits, 0.0)
