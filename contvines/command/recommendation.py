@@ -1,4 +1,4 @@
-"""What `contvines recommend` found: numbers, and the sentences and tables that tell them."""
+"""The result of `contvines recommend`: its data, and the sentences and tables that present them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ..shared.motions import BAND
 from ..shared.numbers import figures
 from ..text_table import Table, fitted, terminal_width
 
-AGREES = 0.01  # of the largest response by diagrams: simulations that exceed it by more are told
-MOST = 4  # sentences about what is not known
+AGREES = 0.01  # relative excess of simulated responses over those of diagrams above which it is reported
+MOST = 4  # largest number of sentences about unknown results
 THOUSAND = 1000.0
 LARGER = {"mm": "m", "mm/s": "m/s", "mJ": "J", "mW": "W", "mN": "N"}
-"""Units in which a thousand and more of the unit are shown."""
+"""Larger unit in which numbers of a thousand and more are shown, by unit."""
 
 
 MET = {
@@ -25,14 +25,14 @@ MET = {
     "calm": "calm: slides without impacts",
     "stuck": "stuck: moves with the oscillator",
 }
-"""What simulated motions are."""
+"""Kinds of simulated motions of machines with an absorber, with their descriptions."""
 PLAIN = {
     "impacts": "periodic, hits rigid walls",
     "modulated": "modulated",
     "calm": "periodic, hits no rigid wall",
     "stuck": "stuck",
 }
-"""The same of machines that are not known to have an absorber."""
+"""Descriptions of the kinds for other machines."""
 LOADS = {
     "impact_speed": ("fastest impact", "of periodic and modulated motions"),
     "approach_speed": ("fastest impact", "of periodic motions"),
@@ -41,28 +41,29 @@ LOADS = {
     "impact_rate": ("impacts per second", "noise: how often"),
     "impact_energy": ("energy of an impact", "noise: how hard"),
 }
-"""Measures that say what impacts do, and what is said of them."""
+"""Measures of loads and noise by impacts, with name and remark for the table."""
 Number = Annotated[float, BeforeValidator(lambda value: math.nan if value is None else value)]
-"""Not known where JSON has null."""
+"""A number that is nan where JSON has null: unknown."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """One value of what is chosen, over the samples.
+    """Responses at one value of the chosen parameter, over all samples of the uncertain parameters.
 
     Attributes
     ----------
     value : float
+        Of the chosen parameter.
     worst, median : float
-        Of the largest response over all that coexists; no number where it is not known of every sample.
+        Over the samples, of the largest response of all coexisting motions; nan if it is not known for every sample.
     engaged : float
-        The worst if at each value of the parameter the lowest of the coexisting responses is met.
+        The worst response if at each value of the parameter the lowest coexisting response occurs.
     unknown, samples : int
-        Of how many samples the response is not known, and how many there are; one where nothing is uncertain, and in the first look.
+        Number of samples with unknown response, and of all samples; 1 without uncertain parameters, and in the first round.
     why : str
-        Of the first one that is not known.
+        Reason for the first unknown response.
     left : bool
-        Whether samples were left out, as the response in one of them is too large already: the worst is at least `worst`.
+        Whether samples were left out because one response was too large already; the true worst response is then at least `worst`.
     """
 
     value: Number
@@ -77,7 +78,15 @@ class Place:
 
 @dataclass(frozen=True)
 class Jump:
-    """Where the worst response jumps beside the tolerance: it has done so at `at`, and is at least `response` at `beyond`, which is no nearer."""
+    """A jump of the worst response just outside the tolerance.
+
+    Attributes
+    ----------
+    at : float
+        Nearest value of the chosen parameter beyond the jump.
+    beyond, response : float
+        A value at `at` or further away, and the worst response there.
+    """
 
     at: float
     beyond: float
@@ -86,7 +95,7 @@ class Jump:
 
 @dataclass(frozen=True)
 class Curve:
-    """A response over the parameter: `name` is ``stable``, ``simulated`` (up and down), or one of `orbits.design.references.KINDS`."""
+    """A response curve over the parameter: `name` is ``stable``, ``simulated`` (up and down), or one of `orbits.design.references.KINDS`."""
 
     name: str
     x: list[float]
@@ -108,52 +117,55 @@ class Start:
 
 @dataclass(frozen=True)
 class Recommendation:
-    """A value, what it costs and brings, and what is not known.
+    """A recommended value of a parameter, with its benefits, its costs, and the gaps in the results.
 
     Attributes
     ----------
     study, title : str
+        Path and name of the study.
     name, parameter : str
-        What is chosen, and what the responses run over.
+        The chosen parameter, and the parameter over which responses are computed.
     within : (float, float)
-        The parameter's interval.
+        Interval of `parameter`.
     units : dict
-        Of all names below.
+        Units of the names below.
     value : float or None
-        The choice; None where nothing is known of any value with all samples.
+        The choice; None if no value has known responses for all samples.
     own : float or None
-        What the study's `[model]` has.
+        The value in the study's `[model]`.
     tolerance : (float, float)
-        Between these values the worst response is at most `cost` above the best; they are values that were looked at, so that the true
-        interval is wider.
+        Interval in which the worst response is at most `cost` above the best. Its ends are computed values; the true interval is wider.
     cost : float
-        As a share.
+        Relative.
     theory : dict
-        `orbits.design.references.first_clearance`; empty where there is none.
+        Result of `orbits.design.references.first_clearance`; empty if there is none.
     places : list of Place
-        All that was looked at, ascending; those of the first look are of the study's own machine.
+        All computed values, ascending; those of the first round are for the study's machine without uncertainty.
     compared : dict
-        Kind -> largest response and where, of the machines to compare with.
+        Largest response and its place, by kind of machine for comparison.
     target : float
-        The response at which the machine counts as quieted; `works` is the share of samples in which the worst response is at most this.
+        The response below which the machine counts as quieted.
     works : float
+        Share of samples whose worst response is at most `target`.
     met : dict
-        Shares of simulated starts (over samples, values, starts) by what they lead to: ``impacts``, ``modulated``, ``calm``, ``stuck``; the
-        largest responses of each, ``calm_peak`` and so on; the band of modulated ones (`contvines.shared.motions`) and how many are strongly so.
+        Shares of simulated starts (over samples, values, starts) by the kind of motion reached: ``impacts``, ``modulated``, ``calm``,
+        ``stuck``; the largest response of each kind, ``calm_peak`` and so on; the band of modulated motions (`contvines.shared.motions`)
+        and the share of strong modulation among them.
     loads : dict
-        Largest over the stable motions and samples, by measure.
+        Largest value over the stable motions and samples, by measure.
     checked : (float, float) or None
-        Largest response of the study's machine at the choice by the diagram and by simulation.
+        Largest response of the study's machine at the choice, by the diagram and by simulation.
     start_up : Start or None
     jumps : list of Jump
         Next to the tolerance, below or above it.
     machine : dict
-        The study's quantities by name, as text with units and with what is uncertain of them.
+        The study's quantities by name, as text with units and uncertainties.
     curves : list of Curve
-        Responses of the study's machine at the choice, and those to compare with.
+        Responses of the study's machine at the choice, and of the machines for comparison.
     assumed, unknown : list of str
+        Sentences about assumptions and unknown results.
     absorber : bool
-        Whether an absorber slides in a cavity of the machine, so that the words for it fit.
+        Whether the machine has an absorber in a cavity, so that the descriptions in `MET` apply.
     """
 
     study: str
@@ -183,17 +195,17 @@ class Recommendation:
     absorber: bool = True
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON, at full precision."""
+        """Return the data ready for JSON, at full precision."""
         return asdict(self)
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Recommendation:
-        """From `to_dict`, through JSON: that has no nan."""
+        """Make a recommendation from the JSON data of `to_dict`, with null for nan."""
         return TypeAdapter(cls).validate_python(data)
 
     # ------------------------------------------------------------------ sentences
     def shown(self, name: str, value: float | None) -> str:
-        """A value with its unit, for people."""
+        """Format a value with its unit."""
         if value is None or not math.isfinite(value):
             return "not known"
         unit = self.units.get(name, "")
@@ -204,22 +216,22 @@ class Recommendation:
 
     @property
     def chosen(self) -> Place | None:
-        """The place of the choice."""
+        """The entry of `places` for the choice."""
         return next((p for p in self.places if p.value == self.value and p.samples == self.most), None)
 
     @property
     def most(self) -> int:
-        """How many samples the later looks have."""
+        """Number of samples in the later rounds."""
         return max(place.samples for place in self.places)
 
     @property
     def _named(self) -> str:
-        """What is chosen, in words."""
+        """The chosen parameter, in words."""
         return self.name.replace("_", " ")
 
     @property
     def simulated(self) -> float:
-        """Largest response at the choice by simulation where this is more than the worst that diagrams know; else minus infinity."""
+        """Largest simulated response at the choice if it exceeds the worst response of diagrams; otherwise minus infinity."""
         place = self.chosen
         if place is None or self.checked is None or self.checked[1] <= (1.0 + AGREES) * place.worst:
             return -math.inf
@@ -227,13 +239,13 @@ class Recommendation:
 
     @property
     def at_end(self) -> bool:
-        """Whether the choice is the least or the largest value that was looked at."""
+        """Whether the choice is the smallest or the largest computed value."""
         values = [place.value for place in self.places]
         return len(values) > 1 and self.value in (min(values), max(values))
 
     @property
     def _kinds(self) -> dict[str, str]:
-        """What simulated motions are, in words that fit the machine."""
+        """Descriptions of the kinds of simulated motions that apply to the machine."""
         return MET if self.absorber else PLAIN
 
     @property
@@ -251,7 +263,7 @@ class Recommendation:
 
     @property
     def sentences(self) -> list[str]:
-        """What there is to say beside the tables, the most important first."""
+        """Return the sentences beside the tables, the most important first."""
         peak, place, own = "peak", self.chosen, self._own()
         found = [*self._beside(), *([own] if own else [])]
         if place is not None and self.simulated > place.worst:
@@ -288,7 +300,7 @@ class Recommendation:
         return found
 
     def _beside(self) -> list[str]:
-        """How far from the choice the response jumps, and what the place with the lowest response has that stands nearer to it."""
+        """Return sentences about the distance of the choice from jumps, and about a lower response nearer to a jump."""
         place, found = self.chosen, []
         if place is None:
             return []
@@ -309,12 +321,12 @@ class Recommendation:
 
     @property
     def engaged(self) -> Place | None:
-        """The place with the lowest response if the lowest of those that coexist is met."""
+        """The entry of `places` with the lowest response if the lowest coexisting response always occurs."""
         known = [place for place in self.places if math.isfinite(place.engaged)]
         return min(known, key=lambda place: place.engaged, default=None)
 
     def _own(self) -> str:
-        """How the study's own value compares with the choice."""
+        """Compare the study's own value with the choice in a sentence."""
         if self.own is None or self.value is None:
             return ""
         place = next((place for place in self.places if place.value == self.own), None)
@@ -334,7 +346,7 @@ class Recommendation:
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
-        """The table of responses: what, how much, remark."""
+        """Return the rows of the table of responses: name, value, remark."""
         from orbits.design.references import NAMES
 
         place, found = self.chosen, []
@@ -357,7 +369,7 @@ class Recommendation:
 
     @property
     def behaviour(self) -> list[tuple[str, str, str]]:
-        """Where it works, and what happens else."""
+        """Return the rows about the share of samples in which the machine is quieted, and the kinds of motions."""
         said = "not known" if math.isnan(self.works) else f"{100 * self.works:.3g} %"
         found = []
         if not math.isnan(self.target):
@@ -377,7 +389,7 @@ class Recommendation:
 
     @property
     def load_rows(self) -> list[tuple[str, str, str]]:
-        """Loads and noise."""
+        """Return the rows about loads and noise."""
         return [
             (said, self.shown(name, self.loads[name]), why)
             for name, (said, why) in LOADS.items()
@@ -386,7 +398,7 @@ class Recommendation:
 
     @property
     def start_rows(self) -> list[tuple[str, str, str]]:
-        """The start-up."""
+        """Return the rows about the start-up."""
         start = self.start_up
         if start is None:
             return []
@@ -404,19 +416,19 @@ class Recommendation:
 
     @property
     def first_unknown(self) -> list[str]:
-        """The first sentences on what is not known, and how many more there are."""
+        """Return the first sentences about unknown results, and the number of further ones."""
         more = len(self.unknown) - MOST
         return [*self.unknown[:MOST], *([f"{more} more, in the JSON"] if more > 0 else [])]
 
     @property
     def start_up_at(self) -> str:
-        """Under which excitation it is."""
+        """The excitation of the start-up, in words."""
         said = next((text for text in self.assumed if text.startswith("start-up")), "")
         return said.partition(" from rest ")[2]
 
     @property
     def tables(self) -> list[tuple[str, list[tuple[str, str, str]]]]:
-        """All tables with their titles; those that have rows."""
+        """Return all non-empty tables with their titles."""
         low, high = self.within
         over = f"Largest response, {self.parameter} {figures(low)} to {self.shown(self.parameter, high)}"
         at = "" if self.value is None else f" At {self._named} = {self.shown(self.name, self.value)}"

@@ -1,4 +1,4 @@
-"""A clearance for a study: by theory, by a first look over its range, then by diagrams of all samples ever nearer to the best."""
+"""Choice of a clearance for a study: by theory, by a first round over its range, then by diagrams of all samples closer and closer to the best value."""
 
 from __future__ import annotations
 
@@ -26,16 +26,17 @@ from .survey_study import asked_of
 if TYPE_CHECKING:
     from ..survey import Survey
 
-UNSEEN = "not looked at"  # a note
-LATER = (7, 5)  # values of the later looks, between the neighbours of the best
-QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
-VALUES, STARTS = 9, 6  # of the parameter, and at each, from which it is told what is met at the choice
-FEW = 2  # starts where flights are integrated
-TRIED = 5  # choices of such machines that are looked at by diagrams, until one is the best of all
-STEEP = 0.05  # of the value that is chosen: a rise within it counts as a jump
-MARGIN = 0.02  # of the value that is chosen: nearer to a jump of the response another value is taken, if it costs no more than the tolerance
-JUMP = 0.2  # of the response: such a rise beside the tolerance is looked at
-HALVED = 4  # how often the distance to it is halved
+UNSEEN = "not looked at"  # note of a sample that was not computed
+LATER = (7, 5)  # number of values in each later round, between the neighbours of the best one
+QUIETED = 0.9  # default target, relative to the bare machine's response
+VALUES, STARTS = 9, 6  # number of parameter values, and of starts at each, that are simulated at the choice
+FEW = 2  # number of these starts if flights are integrated
+TRIED = 5  # largest number of choices of such machines that are checked by diagrams
+STEEP = 0.05  # relative distance from the choice within which a rise of the response counts as a jump
+# smallest relative distance of the choice from a jump; another value keeps it, if that costs no more than the tolerance
+MARGIN = 0.02
+JUMP = 0.2  # relative rise of the response next to the tolerance that may be a jump
+HALVED = 4  # bisections of the distance to such a rise
 
 
 def recommend(
@@ -48,38 +49,40 @@ def recommend(
     tell: Callable[[str], None] = lambda _: None,
     progress: bool = False,
 ) -> Recommendation:
-    """The value of what a study leaves open, its clearance, with which the worst response is lowest.
+    """Recommend the value of a study's free parameter, usually a clearance, with the lowest worst response.
 
     1. Theory (`orbits.design.references.first_clearance`) gives a first value, and the range if the study has none.
-    2. A diagram of the study's own machine at each of some values over the range.
-    3. Diagrams of all samples between the neighbours of the best, twice; of a value that costs too much in one sample no others.
-    4. Beside a jump of the response another value is taken, if it costs little enough.
-    5. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
+    2. First round: a diagram of the study's machine, without uncertainty, at each of some values over the range.
+    3. Later rounds: diagrams of all samples between the neighbours of the best value, twice; a value that is too bad in one sample is not
+       computed for the others.
+    4. A choice next to a jump of the response is moved away from it, if that costs little enough.
+    5. At the choice: the kinds of motions that simulated starts reach, loads, start-up, and simulations up and down.
 
-    Of a machine whose flights are integrated 2. and 3. are simulations up and down and from drawn starts (`swept_responses`). Its choice
-    is looked at by diagrams of all samples: it stands if these know no larger response, to 1 %.
+    For a machine whose flights are integrated, steps 2 and 3 use simulations up and down and from drawn starts (`swept_responses`) instead
+    of diagrams. Its choice is then checked by diagrams of all samples: they must not find a response larger by more than 1 %.
 
     Parameters
     ----------
     study : Study or path
-        `[survey] vary` has at most one parameter on a grid or a range with ``count``, which is chosen (``half_width`` if there is none); the others are
-        uncertain.
+        At most one parameter in `[survey] vary` is on a grid or has a range with ``count``; it is chosen (``half_width`` if there is
+        none). The others are uncertain.
     cost : float
-        The share by which the worst response may be higher within the tolerance.
+        Relative increase of the worst response that is allowed within the tolerance.
     target : float, optional
-        The response that counts as quieted, in the study's unit; nine tenths of the bare machine's by default.
+        The response below which the machine counts as quieted, in the study's unit; by default nine tenths of the bare machine's response.
     workers : int, optional
-        Processes; all cores by default.
+        Number of processes; by default one per core.
     journal : callable, optional
-        Round -> the file in which its rows are kept, so that interrupted work goes on.
+        Returns for the number of a round the file in which its rows are stored, from which interrupted work resumes.
     tell : callable, optional
-        Takes a sentence at the beginning of each round.
+        Called with a message at the beginning of each round.
     progress : bool
+        Whether to show the progress of each round.
 
     Raises
     ------
     ValueError
-        If nothing can be chosen; the sentence names the field and a way out.
+        If nothing can be chosen; the message names the field and suggests a remedy.
     """
     from .study import read_study
 
@@ -98,25 +101,25 @@ def recommend(
 
 
 class _Work(Machines):
-    """The search for the best of the machines."""
+    """The search for the best machine."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.missed: list[str] = []  # what is not known as simulations missed it
+        self.missed: list[str] = []  # sentences about larger responses that simulations have missed
         self.round = 0
-        self.rows: dict[float, _Looked] = {}  # by value, of all samples
-        self.places: dict[float, Place] = {}  # ascending
+        self.rows: dict[float, _Looked] = {}  # responses of all samples, by value
+        self.places: dict[float, Place] = {}  # by value, ascending
 
     def best(self) -> Place | None:
-        """The place with the lowest worst response of all samples; None where none is known."""
+        """Return the place with the lowest worst response of all samples; None if none is known."""
         return _best(place for place in self.places.values() if place.samples == self.samples)
 
     def note(self, places: Iterable[Place]) -> None:
-        """Take up places, those of more samples instead of those of the first look."""
+        """Add places; they replace those of the first round at the same values."""
         self.places = dict(sorted((self.places | {place.value: place for place in places}).items()))
 
     def first_look(self) -> Place | None:
-        """Diagrams of the study's own machine over the range; the best place."""
+        """Compute diagrams of the study's machine, without uncertainty, over the range; return the best place."""
 
         values = self.range()
         self._tell_round(len(values))
@@ -128,7 +131,7 @@ class _Work(Machines):
         return _best(self.places.values())
 
     def between_neighbours(self, best: Place, count: int) -> Place | None:
-        """Diagrams of the samples at so many values between the neighbours of the best; the best then."""
+        """Compute diagrams of the samples at `count` values between the neighbours of the best place; return the new best place."""
         values = list(self.places)
         at = values.index(best.value)
         low, high = values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
@@ -136,8 +139,10 @@ class _Work(Machines):
         return self.best()
 
     def later_look(self, values: Iterable[float], near: float) -> None:
-        """Diagrams of the samples: all of them at the value nearest to the best; at others first of the sample that is worst there, and no more
-        where that costs too much, for the worst of all samples is no better.
+        """Compute diagrams of the samples at some values.
+
+        At the value nearest to `near` all samples are computed. At the others, the sample that is worst at the best value comes first; if
+        its response is too large, the other samples are left out, as the worst of all samples cannot be lower.
         """
         known = self.rows
         new = sorted((v for v in values if v not in known), key=lambda v: (abs(v - near), v))
@@ -156,8 +161,10 @@ class _Work(Machines):
         self.note(_place(value, row, self.samples) for value, row in known.items())
 
     def passed_over(self, best: Place) -> Place:
-        """The best place: values at which the study's own machine has a much lower response than the best has in its worst sample
-        are looked at in all samples, the lowest first, and then between their neighbours.
+        """Return the best place after computing all samples at promising values that the rounds have passed over.
+
+        These are values of the first round with a response much lower than the worst response of the best place. They are computed in
+        the order of the response; if one is better, the values between its neighbours are computed, too.
         """
         while True:
             alone = _best(place for place in self.places.values() if place.value not in self.rows)
@@ -169,7 +176,7 @@ class _Work(Machines):
                 best = self.between_neighbours(found, LATER[-1]) or found
 
     def _look(self, values: Sequence[float], samples: np.ndarray) -> None:
-        """Diagrams at these values, of these samples."""
+        """Compute diagrams of some samples (by index) at some values, and add them to `rows`."""
 
         if not len(values) or not len(samples):
             return
@@ -186,7 +193,7 @@ class _Work(Machines):
                 own[samples] = column[i]
 
     def _looked(self, plan: Plan) -> _Looked:
-        """Responses by diagrams, or by simulation where flights are integrated."""
+        """Compute the responses of a plan, by diagrams, or by simulation if flights are integrated."""
         return _looked(self.surveyed(plan, ("peak", "lower_peak"), swept=SWEPT if self.integrated else 0))
 
     def _tell_round(self, machines: int, at_most: str = "") -> None:
@@ -197,10 +204,11 @@ class _Work(Machines):
 
     # ------------------------------------------------------------------ at the choice
     def away_from_jumps(self, best: Place) -> tuple[Place, list[Jump]]:
-        """The best place, and where the response jumps beside the choice.
+        """Return the place of the choice, moved away from jumps of the response, and these jumps.
 
-        A rise next to the tolerance is looked at ever nearer, in the sample in which it rises most: a jump is what does not get smaller, or is near enough all the same. A choice within
-        `MARGIN` of it gives way to the value that is as far, if that costs no more than the tolerance.
+        A rise next to the tolerance is refined by bisection in the sample with the largest response. It is a jump if it does not get
+        smaller, or if it is within `STEEP` of the choice. A choice within `MARGIN` of a jump is moved to that distance, if it costs no
+        more than the tolerance.
         """
         jumps, wanted = [], best.value
         for side in (-1, 1):
@@ -219,8 +227,9 @@ class _Work(Machines):
         return other if other.worst <= (1.0 + self.cost) * best.worst else best, jumps
 
     def tolerance(self, best: Place) -> tuple[float, float]:
-        """The farthest values about the best, without a gap, at which the worst response costs at most so much; of places with all samples, and
-        those with a sample that costs more.
+        """Return the interval of computed values around the best in which the worst response is at most `cost` higher.
+
+        Only places with all samples, or with a sample that is too bad, are considered.
         """
         places = [place for place in self.places.values() if place.samples == best.samples]
         at = [place.value for place in places].index(best.value)
@@ -230,7 +239,7 @@ class _Work(Machines):
         return places[low].value, places[high].value
 
     def _jump(self, best: Place, side: int) -> Jump | None:
-        """The jump next to the tolerance below (-1) or above (1) the best, or a rise as large near by; None where there is neither."""
+        """Return the jump next to the tolerance below (-1) or above (1) the best, or an equally large rise near it; None if there is neither."""
         known = [p for p in self.places.values() if p.samples == best.samples and math.isfinite(p.worst)]
         good = self.places[self.tolerance(best)[side > 0]]
         end = known.index(good) + side
@@ -258,9 +267,10 @@ class _Work(Machines):
         return Jump(bad.value, bad.value, bad.worst) if steep else None
 
     def at_choice(self, best: Place) -> tuple[Place | None, Survey | None]:
-        """Diagrams of all samples at the choice, with simulated starts: the choice, its rows.
+        """Compute diagrams of all samples, with simulated starts, at the choice; return the final choice and its survey.
 
-        Where places were simulated alone and the diagrams know a larger response, another one may be the best, which is looked at in its turn.
+        If the places come from simulation alone and the diagrams find a larger response, another place may be the best; it is then checked
+        likewise.
         """
 
         seen: dict[float, Survey] = {}
@@ -295,7 +305,7 @@ class _Work(Machines):
     def recommendation(
         self, best: Place | None, rows: Survey | None, jumps: list[Jump], target: float | None
     ) -> Recommendation:
-        """All that is printed of the choice."""
+        """Collect all results about the choice."""
         from .plot import peaks_compared
 
         study = self.study
@@ -355,7 +365,11 @@ class _Work(Machines):
 
 
 class _Looked(NamedTuple):
-    """Of machines the largest response, and the largest if the lowest of those that coexist is met, no number where not known; why (`UNSEEN`: not looked at)."""
+    """Responses of machines, as arrays.
+
+    Fields: the largest response; the largest one if the lowest coexisting response always occurs (both nan if unknown); notes with the
+    reasons (`UNSEEN` if not computed).
+    """
 
     known: np.ndarray
     engaged: np.ndarray
@@ -376,7 +390,7 @@ def _place(value: float, row: _Looked, samples: int) -> Place:
 
 
 def _best(places: Iterable[Place]) -> Place | None:
-    """The place with the lowest worst response; None where none is known."""
+    """Return the place with the lowest worst response; None if none is known."""
     known = (place for place in places if math.isfinite(place.worst))
     return min(known, key=lambda place: place.worst, default=None)
 
@@ -386,6 +400,6 @@ def _duration(seconds: float) -> str:
 
 
 def digest(study: Study, cost: float, target: float | None) -> str:
-    """What decides a recommendation."""
+    """Return the digest of everything that determines a recommendation."""
     vary, places = study.survey.vary, [PLACES, *LATER]
     return digest_of({"of": asked_of(study), "vary": vary, "cost": cost, "target": target, "places": places})

@@ -1,4 +1,4 @@
-"""Lines that cannot be understood, refused in one sentence each: what is wrong, and a way out."""
+"""Usage errors of the command line as one sentence each: the error and a remedy."""
 
 from __future__ import annotations
 
@@ -11,17 +11,19 @@ from ..shared.near_names import did_you_mean
 
 
 def refusal(error: Any, words: list[str]) -> str:
-    """A usage error of the command line as one sentence; empty for a bare `contvines`, which asks for help.
+    """Describe a usage error of the command line in one sentence; empty for `contvines` without a command, which prints help.
 
     Parameters
     ----------
-    error : the exception of the parser; known by its name and attributes, whichever module it comes from.
-    words : the line.
+    error : exception
+        Of the parser; recognised by its name and attributes, as its module may differ.
+    words : list of str
+        The command line.
     """
     kind, message, context = type(error).__name__, " ".join(str(error.message).split()), error.ctx
     commands: Any = getattr(context.command, "commands", None) if context else None
     place = context.command_path if context else "contvines"
-    if place == "contvines":  # what was called, as far as the line tells
+    if place == "contvines":  # the command called, as far as the line shows it
         called = [word for word in words[:1] if not word.startswith("-")]
         place = " ".join([place, *(word for word in called if commands is None or word in commands)])
     option = getattr(error, "option_name", "")
@@ -55,7 +57,7 @@ def refusal(error: Any, words: list[str]) -> str:
 
 
 def _bad_value(error: Any, message: str, words: list[str]) -> str:
-    """A value that cannot be, of an option or an argument."""
+    """Describe an invalid value of an option or argument."""
     names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
     said, no_choice, quoted = message.rpartition(" is not one of ")
     if names and names[-1].startswith("-"):

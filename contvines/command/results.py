@@ -1,4 +1,4 @@
-"""`contvines show`, `export`, `report` and `rerun`: a stored result as a table, for other programs, as a page to send round, or computed again."""
+"""`contvines show`, `export`, `report` and `rerun`: print a result, write it for other programs or as an HTML page, or compute it again."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def show(file: FileArgument, json: JsonOption = False) -> None:
 
 
 class Format(StrEnum):
-    """What `export` writes."""
+    """Formats that `export` can write."""
 
     csv = "csv"
     json = "json"
@@ -164,7 +164,7 @@ def report(
 
 
 def _on_paper(answer: Answer | None, page: Path, pdf: Path) -> str:
-    """Print the page, or set its answer without a browser; how it was done."""
+    """Write the PDF of a page, by a browser or (for an answer) without one; return a description of how."""
     from ..report.answer import print_page, set_answer
 
     try:
@@ -177,7 +177,7 @@ def _on_paper(answer: Answer | None, page: Path, pdf: Path) -> str:
 
 
 def _result(file: Path, trust: bool) -> Graph | Chart | Survey:
-    """The graph, chart or survey that a file holds."""
+    """Load the graph, chart or survey of a file."""
     if file.suffix == ".nc":
         from ..survey import load_survey
 
@@ -198,7 +198,7 @@ def _result(file: Path, trust: bool) -> Graph | Chart | Survey:
 
 
 def _answer(file: Path) -> Answer:
-    """The page of a recommendation."""
+    """Return the page of a recommendation's file."""
     from ..journal import provenance
     from ..report.answer import Answer
     from .recommend import kept, report_pictures
@@ -264,7 +264,7 @@ def rerun(
     if command == "atlas" and not isinstance(before, Chart) and "budget" in before.settings:
         study = study.having(
             "atlas", budget=before.settings["budget"]
-        )  # it may have gone on with a larger one
+        )  # the run may have continued with a larger budget
     with held(target, quiet, fresh or _finished(target)):
         if isinstance(before, Chart):
             diagram = target.with_name(f"{target.stem}-diagram.vines")
@@ -293,7 +293,7 @@ def rerun(
 
 
 def _finished(target: Path) -> bool:
-    """Whether an earlier run has ended there: an unfinished one is gone on with."""
+    """Whether the file of an earlier run is finished; an unfinished run is resumed."""
     from ..store import Store
 
     if not target.is_file():
@@ -303,7 +303,7 @@ def _finished(target: Path) -> bool:
 
 
 def _size(result: Graph | Chart) -> str:
-    """How much has been compared."""
+    """Describe the size of a compared result."""
     from ..loci.chart import Chart
 
     if isinstance(result, Chart):

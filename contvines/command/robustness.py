@@ -1,4 +1,4 @@
-"""`contvines robustness` and `basins`: how far a stable motion is from being lost, and which start reaches which motion."""
+"""`contvines robustness` and `basins`: robustness of stable motions, and basins of attraction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`contvines diagram`, `trace`, `atlas` and `switch`: the commands that continue."""
+"""`contvines diagram`, `trace`, `atlas` and `switch`: the commands for continuation."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def switch(
 
 
 def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, list[Any]]:
-    """The graph of a file with what leaves a special point, and the branches that are new."""
+    """Return the graph of a file extended by the branches that leave a special point, and these new branches."""
     from ..continuation.settings import Settings
     from ..graph.automatic import switch as leave
     from ..store import Store
@@ -148,7 +148,7 @@ def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, li
     graph = load_file(file, trust)
     refuse_unfinished(graph, file)
     check_special(graph, file, label)
-    own = Settings().to_dict()  # of which trace allows one branch only
+    own = Settings().to_dict()  # without max_branches below, as a file from `trace` allows one branch only
     settings = {k: v for k, v in graph.settings.items() if k in own and k != "max_branches"}
     with (
         working(f"{file} is as it was", quiet) as progress,
@@ -211,14 +211,14 @@ def _run(
 
 
 def _budget(study: Study) -> int:
-    """Units of work that the atlas of a study may take."""
+    """Return the budget of a study's atlas, in units of work."""
     from ..coexistence.effort import BUDGET
 
     return study.atlas.budget or BUDGET
 
 
 def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Graph:
-    """The graph of a study: from its file if that is finished, computed else."""
+    """Return the graph of a study, from its file if that is finished, otherwise computed."""
     from ..graph import Graph
     from .compose import first_orbit, population, run_atlas, run_diagram
 
@@ -245,9 +245,9 @@ def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems:
 
 
 def _looked(study: Study, target: Path) -> Graph:
-    """The graph with what a few simulated starts after a diagram reach beside it, which is kept in the file, too.
+    """Run the brief search after a diagram, and store its result in the file; return the graph with the missing attractors.
 
-    The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
+    The graph is read from its file, so that the result does not depend on whether a run was killed during the search.
     """
     from ..coexistence.census import look
     from ..graph import Graph
@@ -262,7 +262,7 @@ def _looked(study: Study, target: Path) -> Graph:
         ):
             try:
                 look(graph, population(study))
-            except ValueError as error:  # no start lies between the walls: the diagram is whole all the same
+            except ValueError as error:  # no start lies between the walls; the diagram stands
                 say(f"what else may settle was not simulated: {error}", quiet=False)
         store.checkpoint(graph)
         store.tidy()
@@ -279,7 +279,7 @@ def _picture(
     if compare:
         from .plot import compared
 
-        # beside other machines it is the responses that matter, not how branches hang together
+        # in a comparison the responses matter, not the connections of branches
         figure = compared(graph, compare, x, y, marks=[], labels=False, color="stability")
     else:
         from ..plots.diagram import plot_diagram
@@ -291,7 +291,7 @@ def _picture(
 
 
 def _shows_response(graph: Graph, y: str | None) -> bool:
-    """Whether the picture shows how far something goes, of which simulations tell the band."""
+    """Whether the picture shows a displacement, for which simulations give the band of modulated motions."""
     from ..graph.stretches import default_measure
 
     shown = default_measure(graph)
@@ -299,7 +299,7 @@ def _shows_response(graph: Graph, y: str | None) -> bool:
 
 
 def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
-    """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
+    """Draw simulated responses in the gaps of the diagram: dots, and bars over the range per forcing period for motions that do not recur."""
     from ..plots.legends import place_legend
     from ..plots.sweep import draw_bands
     from ..shared.figures import styled

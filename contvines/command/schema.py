@@ -1,4 +1,4 @@
-"""Sections and fields of a TOML study with the values that they expect, and models of whole studies made from tables of parameters."""
+"""Pydantic models of the sections of a TOML study, and models of whole studies made from tables of parameters."""
 
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeVar, get_args
@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 
 from orbits.machines.parameters import CONTACT_TIME, Parameter
 
-LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
+LONGEST = 65_536  # largest length of a word: 16 letters for each of the largest number of forcing periods
 
 
 class Section(BaseModel):
@@ -23,7 +23,7 @@ class Section(BaseModel):
 
 
 def text(expected: str, **limits: Any) -> Any:
-    """A field with limits, as pydantic's `Field` names them, and a way out, for refusals and for editors."""
+    """Declare a field: `expected` describes valid values in error messages and editors; `limits` are arguments of pydantic's `Field`."""
     return Field(description=expected, **limits)
 
 
@@ -38,7 +38,7 @@ PARAMETER = "the name of one of the model's parameters"
 
 
 class WordSection(Section):
-    """`[start]` of a machine: the first orbit; without a word the motion that settles from rest."""
+    """`[start]` of a machine: the first orbit; without a word, the motion on which the machine settles from rest."""
 
     word: Annotated[
         str | None,
@@ -51,14 +51,17 @@ class WordSection(Section):
 
 
 class PageStart(WordSection):
-    """`[start]` of a declared machine: the word may be left out (the attractor from `state` is taken)."""
+    """`[start]` of a declared machine: the first orbit; without a word, the motion on which the machine settles from `state`."""
 
     state: Annotated[dict[str, float] | None, text("states by name, for example { x = 0.1 }")] = None
 
 
 class FlowStart(Section):
-    """`[start]` of a flow: where a motion begins whose cycle is followed; without it, the equilibrium near the flow's own start. ``box`` are
-    the ranges of the states from which an atlas and basins begin."""
+    """`[start]` of a flow.
+
+    ``state`` is the initial state of a motion that settles on the first cycle; without it, the diagram begins with the equilibrium near the
+    flow's own start. ``box`` has the ranges of the starts of an atlas and of basins.
+    """
 
     state: Annotated[list[float] | None, text("one number for each state", min_length=1)] = None
     box: Annotated[
@@ -68,7 +71,7 @@ class FlowStart(Section):
 
 
 class ContinueSection(Section):
-    """`[continue]`: the parameter, its interval and how far to go; measures within whose bounds branches stay."""
+    """`[continue]`: the continuation parameter, its interval, the depth, settings, and bounds on measures at which branches end."""
 
     parameter: Annotated[str, text(PARAMETER)]
     within: Interval
@@ -96,7 +99,7 @@ class ContinueSection(Section):
 
 
 class SweepSection(Section):
-    """`[sweep]`, optional: the brute-force simulation of `contvines sweep`."""
+    """`[sweep]`, optional: settings of the simulations by `contvines sweep`."""
 
     within: Interval | None = None
     count: Annotated[int, text("a whole number >= 2 and <= 1000000, for example 400", ge=2, le=1_000_000)] = (
@@ -112,8 +115,7 @@ class SweepSection(Section):
 
 
 class AtlasSection(Section):
-    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed, how many
-    further values in a row must meet nothing new, and how much work it may take."""
+    """`[atlas]`, optional: settings of `contvines atlas`; see `contvines.atlas` for their meaning."""
 
     values: Annotated[
         Annotated[int, Field(ge=1, le=10_000)] | list[float],
@@ -130,19 +132,19 @@ class AtlasSection(Section):
     budget: Annotated[int | None, text("a whole number of 1 or more, for example 500000", ge=1)] = None
 
     def of_results(self) -> dict[str, Any]:
-        """What files of a run and of one that goes on from it share; older ones have the number of starts that was the only default."""
+        """Return the settings that a run and its continuation share, for the study's digest; older files have the old default of starts."""
         return {**self.model_dump(exclude={"budget"}), "starts": self.starts or 256}
 
 
 class ChartSection(Section):
-    """`[chart]`, optional: the second parameter of `contvines chart`."""
+    """`[chart]`, optional: the second parameter of `contvines chart` and its interval."""
 
     parameter: Annotated[str, text(PARAMETER)]
     within: Interval
 
 
 class SurveySection(Section):
-    """`[survey]`, optional: the many machines of `contvines survey`."""
+    """`[survey]`, optional: the machines and outcomes of `contvines survey`."""
 
     vary: Annotated[
         dict[str, Any], text('names and their values, for example half_width = ["10 mm", "15 mm"]')
@@ -175,7 +177,7 @@ class RandomSection(Section):
 
 
 class FlowSections(Section):
-    """What a study of a flow has beside it."""
+    """The sections of a study of a flow, besides `[model]`."""
 
     start: FlowStart = FlowStart()
     continue_: Annotated[ContinueSection, Field(alias="continue")]
@@ -185,7 +187,7 @@ class FlowSections(Section):
 
 
 class MachineSections(Section):
-    """What a study of any machine has beside it."""
+    """The sections common to studies of machines, besides `[model]`."""
 
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
@@ -196,13 +198,13 @@ class MachineSections(Section):
 
 
 class StudySections(MachineSections):
-    """What every study of a built-in machine has beside it."""
+    """The sections of a study of a built-in machine, besides `[model]`."""
 
     start: WordSection = WordSection()
 
 
 class PageSections(MachineSections):
-    """What every study of a machine of a Python file has beside it."""
+    """The sections of a study of a declared machine, besides `[model]`."""
 
     start: PageStart = PageStart()
 
@@ -215,14 +217,14 @@ class _AnyStart(Section):
 
 
 class UnknownModel(MachineSections):
-    """A study whose model is not known: all that can be checked without it."""
+    """The sections of a study whose model is unknown, with all checks that do not need it."""
 
     model: object = None
     start: _AnyStart = _AnyStart()
 
 
 def expected_value(entry: Parameter) -> str:
-    """What a parameter may be, as a sentence ends with it."""
+    """Describe the valid values of a parameter, as the end of a sentence."""
     limits = entry.limits.in_studies
     if limits.open:
         return f"a number in ({limits.low:g}, {limits.high:g}], for example {entry.example:g}"
@@ -233,12 +235,12 @@ def expected_value(entry: Parameter) -> str:
 
 
 def shown(number: float) -> str:
-    """A limit as people write it: 1e6, not 1e+06."""
+    """Format a limit: 1e6, not 1e+06."""
     return f"{number:g}".replace("e+0", "e").replace("e-0", "e-")
 
 
 def number(entry: Parameter) -> Any:
-    """The type of a parameter's values in a study: a number within its limits, or one of its words."""
+    """Return the type of a parameter's values in a study: a number within its limits, or one of its words."""
     limits = entry.limits.in_studies
     ends = {"gt" if limits.open else "ge": limits.low, "le": limits.high}
     about = {"description": f"{entry.meaning}; for example {entry.example:g}"}
@@ -257,16 +259,16 @@ def number(entry: Parameter) -> Any:
 def study_model(
     base: type[S], settings: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, Any]
 ) -> type[S]:
-    """The model of a whole study.
+    """Return the pydantic model of a whole study.
 
     Parameters
     ----------
     base : type of Section
-        The sections beside `[model]`.
+        The sections besides `[model]`.
     settings : mapping
-        Fields of `[model]` by name: type and default, ``...`` where there is none.
+        Type and default (``...`` if none) of each field of `[model]`, by name.
     parameters : mapping
-        Type of each parameter by name: `[start]` may give it, `[continue]` and `[chart]` may vary it.
+        Type of each parameter, by name: `[start]` may set it, `[continue]` and `[chart]` may vary it.
     """
     chosen = Annotated[Literal[tuple(parameters)], text(PARAMETER)]  # type: ignore[valid-type]
     kinds: dict[str, Any] = {name: kind_of(field) for name, field in base.model_fields.items()}
@@ -285,7 +287,7 @@ def study_model(
 
 
 def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> Any:
-    """A section with further fields; they go by aliases, as their names may be those of a method of pydantic."""
+    """Return the model of a section with further fields, by aliases, as their names may be those of methods of pydantic."""
     own: dict[str, Any] = {
         name if name in base.model_fields else f"field_{place}": (Annotated[kind, Field(alias=name)], default)
         for place, (name, (kind, default)) in enumerate(fields.items())
@@ -294,13 +296,13 @@ def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> Any:
 
 
 def kind_of(field: FieldInfo) -> type[Section]:
-    """The section's model that a field of a study holds."""
+    """Return the section model that is the type of a field of a study."""
     kinds: Iterable[Any] = (field.annotation, *get_args(field.annotation))
     return next(kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Section))
 
 
 def values_of(file: Any, names: Iterable[str]) -> dict[str, Any]:
-    """What `[model]`, and in its place `[start]`, of a study that is an instance of a `study_model` say of some names, or have as a default."""
+    """Return the values (or defaults) of some names in a checked study; a value in `[start]` replaces that in `[model]`."""
     said = {}
     for section in (file.model, file.start):
         said |= section.model_dump(by_alias=True, exclude_none=True)
@@ -308,7 +310,7 @@ def values_of(file: Any, names: Iterable[str]) -> dict[str, Any]:
 
 
 def catalogue_model(name: str) -> type[StudySections]:
-    """The model of a study of a machine of the catalogue."""
+    """Return the model of studies of a machine of the catalogue."""
     from orbits.machines.names import model_class
 
     machine = model_class(name)
