@@ -17,6 +17,7 @@ from orbits import Absorber, DryFriction, Machine, Switch, Wall
 from orbits import multiple_scales as ms
 from orbits.attractors import sweep
 from orbits.design import Design
+from orbits.design.calibration import from_sweep
 from orbits.simulation import simulate
 from orbits.words import Word
 from tests.machines import ABSORBER, COUPLED, STRONG
@@ -376,6 +377,9 @@ REFUSED = {
     ).orbit("", amplitude=0.05),
     # quantities, design and theory
     "cavity = 0.0 must be positive": lambda: Design(cavity=[0.01, 0.0]),
+    "measure = 'max_q1' is no measure of a sweep of 'coupled' (did you mean 'max_abs_q1'?)": lambda: (
+        from_sweep(orbits.Coupled(**STRONG), "frequency", [1.0], [1.0], {"forcing": 0.1}, measure="max_q1")
+    ),
     "one parameter set": lambda: ms.equilibria(ms.SlowFlow(), np.array([0.0, 1.0])),
     "without friction": lambda: ms.best_clearance(ms.SlowFlow()),
     "no linear peak": lambda: ms.tuned_backbone(ms.SlowFlow(friction=0.0, damping=0.0)),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import ParameterError
 from orbits.machines.parameters import along
 from orbits.settings import DESIGNING
@@ -197,9 +198,11 @@ def from_sweep(
     Raises
     ------
     ParameterError
-        If the columns differ in length or have numbers that are not finite, or if the data do not determine the parameters.
+        If the columns differ in length or have numbers that are not finite, the sweep has no such measure, or the data do not determine the
+        parameters.
     """
     from orbits.attractors import sweep
+    from orbits.attractors.attractor import measure_names
 
     places, heights = np.asarray(values, dtype=float), np.asarray(responses, dtype=float)
     if places.ndim != 1 or places.shape != heights.shape or not places.size:
@@ -209,6 +212,10 @@ def from_sweep(
     if not (np.all(np.isfinite(places)) and np.all(np.isfinite(heights))):
         raise ParameterError("the sweep has numbers that are not finite: leave those rows out")
     model = _with_amounts(machine, unknown)
+    if measure not in (names := measure_names(model)):
+        raise ParameterError(
+            f"measure = {measure!r} is no measure of a sweep of {model.name!r}{did_you_mean(measure, names)}: choose from {', '.join(names)}"
+        )
 
     def residuals(guess: np.ndarray, start: Start = None) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, guess)), fixed)
