@@ -1,8 +1,7 @@
-"""A TOML study, read and checked before any work starts.
+"""Read and check a TOML study, before any computation.
 
-Every value that cannot be used is refused with a sentence that names the field, the value and a way out;
-all such sentences of one study are reported together. Parameters may depend on a condition:
-`restitution = { temperature = [[20, 0.7], [80, 0.6]] }` and `[conditions] temperature = 45`.
+The error message for an invalid value names the field and the value, and suggests a remedy; all errors of a study are reported together.
+Parameters may depend on a condition: `restitution = { temperature = [[20, 0.7], [80, 0.6]] }` and `[conditions] temperature = 45`.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from .study_data import Study
 from .study_data import StudyError as StudyError
 
 QUANTITY = re.compile(r"\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-zA-Z%].*")  # "3.2 kg"
-LARGEST = 1_000_000  # bytes of a study; those of people have a few hundred
-DEEPEST = 8  # sections in sections; a study has one level of them, and lists of lists
+LARGEST = 1_000_000  # largest number of characters of a study; usual studies have a few hundred
+DEEPEST = 8  # deepest nesting; valid studies have one level of sections, and lists of lists
 _LINE = re.compile(r"^\s*(?P<key>[\w.\-\"']+)\s*=\s*(?P<value>[^#]*?)\s*(#.*)?$")
 _COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 _WORD = re.compile(r"[^\W\d][\w.+ -]*")
@@ -39,7 +38,7 @@ def read_study(path: str | Path) -> Study:
     Raises
     ------
     StudyError
-        If the file cannot be read, is not TOML, or holds a value that cannot be used.
+        If the file cannot be read, is not TOML, or contains an invalid value.
     """
     path = Path(path)
     if path.suffix == ".py" and path.is_file():
@@ -67,11 +66,12 @@ def read_study(path: str | Path) -> Study:
 
 
 def study_of(text: str, path: Path) -> Study:
-    """Check a study given as its text; `path` is its place, beside which files that it names are looked for.
+    """Check a study given as text; files that it names are searched for in the folder of `path`.
 
     Raises
     ------
     StudyError
+        As `read_study`.
     """
     try:
         return replace(check_study(toml_data(text), path), text=text)
@@ -113,12 +113,12 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
 
 # ---------------------------------------------------------------------- studies that result files keep
 def kept_study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str, Any]]:
-    """The study that a file keeps, read as if it stood where it stood.
+    """Return the study stored in a result's file, checked as at its original path, and the stored data.
 
     Raises
     ------
     ValueError
-        If the file keeps none, or one that names Python files while it is not trusted.
+        If the file has no study, or the study names Python files and `trust` is false.
     """
     if not isinstance(source, dict) or not source.get("text"):
         raise ValueError(
@@ -136,19 +136,19 @@ def kept_study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str
 
 
 def kept_kinds(file: Path, trust: bool) -> Sequence[Any] | None:
-    """The kinds that the study of a file looks for; None if it keeps no study that names kinds of its own.
+    """Return the kinds of special points of the study stored in a file; None if it has no study with user-defined kinds.
 
     Raises
     ------
     ValueError
-        As `kept_study` does.
+        As `kept_study`.
     """
     source = source_of(file)
     return kept_study(file, source, trust)[0].all_kinds if source else None
 
 
 def source_of(file: Path) -> dict[str, Any] | None:
-    """What a file keeps of the study that made it; see `Study.kept`."""
+    """Return the data about its study that a file stores, see `Study.kept`; None if there are none."""
     from ..store import Store
 
     with Store.open(file) as store:
@@ -157,7 +157,7 @@ def source_of(file: Path) -> dict[str, Any] | None:
 
 # ---------------------------------------------------------------------- TOML
 def toml_data(text: str) -> dict[str, Any]:
-    """The nested dicts of a TOML text.
+    """Parse a TOML text to nested dicts.
 
     Raises
     ------
@@ -170,7 +170,7 @@ def toml_data(text: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise StudyError(f"this is not valid TOML: {_hint(text) or error}.") from None
-    except ValueError:  # of Python, which reads no numbers so long
+    except ValueError:  # of Python, which limits the length of numbers
         raise StudyError("this is not valid TOML: a number has thousands of digits.") from None
     except RecursionError:
         raise StudyError(
@@ -190,7 +190,7 @@ def toml_data(text: str) -> dict[str, Any]:
 
 
 def _hint(text: str) -> str:
-    """What is wrong with the first line that is no TOML, and a way out; empty where it is not one of people's habits."""
+    """Describe a common mistake in the first line that is no TOML, with a remedy; empty if the mistake is not recognised."""
     lines = text.splitlines()
     for number, line in enumerate(lines, start=1):
         found = _LINE.match(line[:1000])
@@ -215,12 +215,13 @@ def _habit(value: str) -> str:
 
 # ---------------------------------------------------------------------- conditions
 def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, float], tuple[Table, ...]]:
-    """A study's data with numbers, or texts, in place of tables over a condition, its conditions, and the tables.
+    """Evaluate the parameters given as tables over a condition; return the study's data with their values, the conditions and the tables.
 
     Raises
     ------
     StudyError
-        If a table, or a condition, cannot be, or a study runs along a parameter that depends on one; the sentence names section and field.
+        If a table or a condition is invalid, or the study varies a parameter that depends on a condition; the message names section and
+        field.
     """
     conditions = _conditions(data.get("conditions", {}))
     plain, tables = {key: value for key, value in data.items() if key != "conditions"}, []
@@ -273,7 +274,7 @@ def _conditions(given: object) -> dict[str, float]:
 
 
 def _table(place: str, name: str, said: Mapping[str, Any]) -> tuple[Table, str]:
-    """The table, its values counted in the unit of the first one, and that unit."""
+    """Return a table with its values in the unit of the first one, and that unit."""
     rows = next(iter(said.values()), None)
     pairs = isinstance(rows, list) and all(isinstance(row, list) and len(row) == 2 for row in rows)
     if len(said) != 1 or not pairs:
@@ -301,11 +302,21 @@ def _table(place: str, name: str, said: Mapping[str, Any]) -> tuple[Table, str]:
 
 
 def check_range(tables: Iterable[Table], name: str, values: Iterable[float], place: str) -> None:
-    """Refuse values of a condition that lie outside of a table.
+    """Check that values of a condition lie in the range of the tables over it.
+
+    Parameters
+    ----------
+    tables : iterable of Table
+    name : str
+        Of the condition.
+    values : iterable of float
+    place : str
+        Field with the values, for the error message.
 
     Raises
     ------
     ValueError
+        If a value lies outside.
     """
     for table in tables:
         for value in values if table.condition == name else ():

@@ -1,4 +1,4 @@
-"""A checked study, the checks of what several fields say together, and sentences for what is wrong: the field, the value and a way out."""
+"""The class of checked studies, checks that involve several fields, and error messages with field, value and remedy."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ if TYPE_CHECKING:
 
 
 SETTINGS = {"tolerance", "angle", "max_step", "max_points", "max_branches", "max_unknowns"}
-SHOWN = 60  # letters of a word that a refusal repeats
-UNION = re.compile(r"constrained-\w+|(list|dict)\[.*\]")  # how pydantic names types in the place of an error
-MOST = 20  # sentences in one refusal
+SHOWN = 60  # largest number of letters of a value that an error message quotes
+UNION = re.compile(r"constrained-\w+|(list|dict)\[.*\]")  # names of types in pydantic's location of an error
+MOST = 20  # largest number of errors in one message
 SECTIONS = {
     "model": 'name = "absorber" and its parameters',
     "continue": 'what to vary and where, for example parameter = "amplitude", within = [0.2, 1.3]',
@@ -58,13 +58,13 @@ WRONG = {
     "less_than": "is out of range",
     "less_than_equal": "is out of range",
 }
-"""What is wrong with a value, by the type of pydantic's error."""
+"""Description of an error, by pydantic's type of error."""
 
 
 class Sort(Enum):
-    """What a study continues."""
+    """Kinds of studies, by the object that is continued."""
 
-    CATALOGUE = auto()  # a built-in machine in its own numbers
+    CATALOGUE = auto()  # a built-in machine in dimensionless numbers
     PHYSICAL = auto()  # a built-in machine in kilograms and hertz
     PAGE = auto()  # a machine that a file beside the study declares
     FLOW = auto()  # differential equations of a file beside the study
@@ -76,23 +76,40 @@ class Study:
 
     Attributes
     ----------
-    path : Path of the TOML file.
-    sort : whose study it is.
-    name : of the machine or flow, as the study has it.
-    parameters : every parameter at the start, by name.
-    parameter, within, depth, virtual : the continuation.
-    settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
-    bounds : (low, high) of measures at which branches end; infinite where there is none.
-    kinds : file and name of the user's own kinds of special points; `all_kinds` are these and the built-in ones, `kinds_digest` is the file's.
-    word, periods, guess : the first orbit.
-    state : where the motion begins from which the first orbit is found, if no word is given: by name, of a flow in the order of its states.
-    model : the machine; None for a flow.
-    flow : the flow; None for a machine.
-    loose : parameters that are given to the machine with each orbit.
-    box : ranges of many starts of a flow.
-    sweep, atlas, chart, survey, random : the sections of these names.
-    text : the TOML text.
-    conditions : values of what parameters depend on; their tables : of parameters over them.
+    path : Path
+        Of the TOML file.
+    sort : Sort
+    name : str
+        Of the machine or flow, as written in the study.
+    parameters : dict
+        Values of all parameters at the start.
+    parameter, within, depth, virtual
+        Of the continuation.
+    settings : dict
+        Fields of `contvines.continuation.settings.Settings` that the study sets.
+    bounds : dict
+        (low, high) by measure, at which branches end; may be infinite.
+    kinds : str or None
+        File and name of user-defined kinds of special points; `all_kinds` are these and the built-in ones, `kinds_digest` is the digest of
+        the file.
+    word, periods, guess
+        Of the first orbit.
+    state : dict, list or None
+        Initial state from which a simulation leads to the first orbit, if no word is given: by name, or for a flow in the order of its states.
+    model, flow
+        The machine or the flow; the other one is None.
+    loose : dict
+        Values of the machine's parameters that belong to an orbit, not to the machine, such as those of the excitation.
+    box : list or None
+        Ranges of the starts of a flow.
+    sweep, atlas, chart, survey, random
+        The sections with these names.
+    text : str
+        The TOML text.
+    conditions : dict
+        Values of the conditions.
+    tables : tuple of Table
+        Parameters as tables over a condition.
     """
 
     path: Path
@@ -135,7 +152,7 @@ class Study:
         file: Sections,
         **machine: Any,
     ) -> Study:
-        """A study from its sections, and its `model` or `flow` and `loose` parameters."""
+        """Make a study from its checked sections; further arguments are the attributes of the machine or flow."""
         go = file.continue_
         said = {**dict(file), "model": None, **dict(file.start), **dict(go)}
         own: dict[str, Any] = {
@@ -152,16 +169,16 @@ class Study:
 
     @property
     def named_state(self) -> dict[str, float] | None:
-        """Where the motion of a machine begins, by name."""
+        """The initial state of a machine, by name; None for a flow, or without one."""
         return self.state if isinstance(self.state, dict) else None
 
     @property
     def options(self) -> dict[str, Any]:
-        """Of each diagram or atlas."""
+        """Arguments of `contvines.diagram` and `contvines.atlas` that the study sets."""
         return {"depth": self.depth, "virtual": self.virtual, "settings": self.settings}
 
     def describe(self) -> dict[str, Any]:
-        """What decides the result, as JSON scalars and lists."""
+        """Return everything that determines the result, JSON-able."""
         start: dict[str, Any] = {"word": self.word, "periods": self.periods, "guess": self.guess}
         go: dict[str, Any] = {"parameter": self.parameter, "within": list(self.within), **self.options}
         if self.state and self.sort is Sort.PAGE:
@@ -174,17 +191,17 @@ class Study:
         return {"model": self._model(), "start": start, "continue": go, **more}
 
     def having(self, section: str, **values: Any) -> Study:
-        """The study with other values in a section, one of `sweep`, `atlas`, `survey`."""
+        """Return the study with other values in a section (`sweep`, `atlas` or `survey`)."""
         return replace(self, **{section: getattr(self, section).model_copy(update=values)})
 
     def kept(self, command: str, target: Path) -> dict[str, Any]:
-        """What a file keeps of its study: `describe()`, and the text from which `contvines rerun` does the command again.
+        """Return the data about the study that a result's file stores: `describe()`, and the text with which `contvines rerun` repeats a command.
 
         Parameters
         ----------
         command : str
         target : Path
-            The file; the study's place is kept as seen from there.
+            The result's file; the study's path is stored relative to it.
         """
         place = os.path.relpath(self.path.absolute(), target.absolute().parent)
         return {**self.describe(), "source": {"command": command, "study": place, "text": self.text}}
@@ -196,7 +213,7 @@ class Study:
             own = {"name": self.name, "digest": self.flow.origin[2], "state": self.state, "box": self.box}
             return {**own, **self.parameters}
         own = self.model.settings() if self.sort is Sort.PAGE else {}
-        # the text of a machine file decides, wherever it lies; the name of a machine that comes with the package
+        # a machine file is identified by its text, not its path; a machine of the package by its name
         for name in ("page", "source", "digest") if self.name in PAGES else ("page",):
             own.pop(name, None)
         if self.sort is Sort.CATALOGUE and self.model.contact_time is not None:
@@ -204,13 +221,13 @@ class Study:
         return {**own, "name": self.name, **self.parameters}
 
     def fingerprint(self, command: str = "diagram") -> str:
-        """Digest of `describe()` and the command: two runs that must give the same graph share it, and those that go on from one another."""
+        """Return the digest of `describe()` and the command; equal for runs with equal results, and for a run and its continuation."""
         more = {"atlas": self.atlas.of_results()} if command == "atlas" else {}
         return digest_of({"command": command, **more, **self.describe()})
 
 
 def without_word(study: Study, refusal: object) -> str:
-    """The refusal of a study's first orbit, with the way out where the study names its word."""
+    """Return the error message for a study's first orbit, with a remedy if the study gives its word."""
     if study.word is None:
         return str(refusal)
     shown = study.word if len(study.word) <= SHOWN else study.word[: SHOWN - 3] + "..."
@@ -223,17 +240,18 @@ def without_word(study: Study, refusal: object) -> str:
 def wrong_intervals(
     file: Sections, first: float | None, refusal: Callable[[str, float], str], unit: str = ""
 ) -> list[str]:
-    """What is wrong with the intervals of a study.
+    """Return the errors of the intervals of a study.
 
     Parameters
     ----------
-    file : the sections.
+    file : Sections
+        The checked sections.
     first : float, optional
-        Of the parameter that varies, at the start.
+        Value of the continuation parameter at the start.
     refusal : callable
-        (parameter, value) -> why it cannot have the value, as it follows the interval; empty if it can.
+        ``refusal(parameter, value)`` returns why the parameter cannot have the value; empty if it can.
     unit : str
-        Of the parameter that varies.
+        Of the continuation parameter.
     """
     go, wrong = file.continue_, []
     intervals = [("continue", go.parameter, go.within)]
@@ -260,24 +278,25 @@ def wrong_intervals(
 
 
 class StudyError(ValueError):
-    """A study that cannot be run; the message says which value and a way out."""
+    """An invalid study; the message names the value and suggests a remedy."""
 
 
 def validated(model: type[S], data: dict[str, Any], wrong: list[str] | None = None) -> S:
-    """A study's sections, checked.
+    """Check the sections of a study by its pydantic model.
 
     Parameters
     ----------
     model : type of Section
         Of the whole study; see `contvines.command.schema.study_model`.
     data : dict
+        The study.
     wrong : list of str, optional
-        Sentences that are reported, too.
+        Errors found before, to be reported together.
 
     Raises
     ------
     StudyError
-        With all that pydantic refuses, a sentence for each field.
+        With all errors, a sentence for each field.
     """
     try:
         return model.model_validate(data)
@@ -291,20 +310,20 @@ def validated(model: type[S], data: dict[str, Any], wrong: list[str] | None = No
                 and each["type"] == "missing"
                 and did_you_mean(str(loc[0]), data.keys() - model_keys)
             ):
-                continue  # the misspelt section is reported
+                continue  # the misspelt section is reported instead
             union = len(loc) < len(each["loc"])  # of a field that may be one of several types, one sentence
             found.setdefault((*loc, "" if union else each["type"]), _sentence(model, loc, each))
         raise together([*(wrong or ()), *found.values()]) from None
 
 
 def refuse(wrong: list[str]) -> None:
-    """Raise `StudyError` with these sentences, if there are any."""
+    """Raise a `StudyError` with these sentences, if there are any."""
     if wrong:
         raise together(wrong)
 
 
 def together(sentences: list[str]) -> StudyError:
-    """All sentences in one error."""
+    """Return one error with all sentences, or the first `MOST`."""
     unique = list(dict.fromkeys(sentences))
     if len(unique) == 1:
         return StudyError(unique[0])
@@ -356,7 +375,7 @@ def _fields(section: FieldInfo) -> dict[str, FieldInfo]:
 
 
 def _expected(field: FieldInfo) -> str:
-    """The value that a field expects: its description, or that of its type."""
+    """Describe the valid values of a field, by its description or its type."""
     parts = (part for kind in get_args(field.annotation) for part in getattr(kind, "__metadata__", ()))
     return field.description or next(
         (part.description for part in parts if getattr(part, "description", None)), "another value"
@@ -369,7 +388,7 @@ def _cut(text: str) -> str:
 
 @contextmanager
 def refused(place: str) -> Iterator[None]:
-    """Say of which place, a file, field or option with its value, a refusal is.
+    """Put a place (a file, or a field or option with its value) before the message of a ValueError raised inside the context.
 
     Raises
     ------

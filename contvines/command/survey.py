@@ -1,4 +1,4 @@
-"""`contvines survey STUDY.toml`: a diagram of each of many machines, and what comes out of them."""
+"""`contvines survey STUDY.toml`: diagrams of many machines, and their outcomes."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def survey(
 
 
 def as_json(found: Survey) -> dict[str, Any]:
-    """A survey as one JSON object: a row per machine."""
+    """Return a survey as one JSON object with a row per machine."""
     rows = [
         {
             **values,
@@ -114,12 +114,12 @@ def as_json(found: Survey) -> dict[str, Any]:
 def surveyed(
     study: Study, target: Path, workers: int | None, cluster: str | None, fresh: bool, quiet: bool
 ) -> Survey:
-    """The survey of a study: from its file if that is finished, else computed, machine by machine.
+    """Return the survey of a study, from its file if that is finished, otherwise computed machine by machine.
 
     Raises
     ------
     ValueError
-        If the file holds another survey, or the study cannot be surveyed.
+        If the file contains another survey, or the study cannot be surveyed.
     """
     from ..survey import load_survey
     from ..survey.survey import digest_of
@@ -167,7 +167,7 @@ def surveyed(
 
 @contextmanager
 def without_main() -> Iterator[None]:
-    """Worker processes do not run the script that started this command: nothing of it is needed there."""
+    """Keep spawned worker processes from running the script that started this command, which they do not need; a context manager."""
     import sys
 
     main = sys.modules["__main__"]

@@ -1,4 +1,4 @@
-"""What a study's `[survey]` means: its plan, its family of machines, its outcomes and their units."""
+"""From a study's `[survey]` to its plan, its family of machines, its outcomes and their units."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from ..survey.plan import Plan
 
 
-WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
+WRITTEN = (Sort.PAGE, Sort.FLOW)  # studies with equations in a Python file
 TEXTS = ("within", "values", "normal", "uniform")
 
 
 def plan_and_machine(study: Study) -> tuple[Plan, Any]:
-    """The plan of a study's survey, and its machine, which tells what varies.
+    """Return the plan of a study's survey, and the machine as given by the parameters that vary.
 
     Raises
     ------
     ValueError
-        If the plan cannot be; the sentence names the field, the value and a way out.
+        If the plan is invalid; the message names the field and the value, and suggests a remedy.
     """
     from orbits.machines.physical.quantities import near_quantity
 
@@ -71,7 +71,7 @@ def plan_and_machine(study: Study) -> tuple[Plan, Any]:
         for name, values in {**plan.axes, **plan.samples}.items():
             check_range(study.tables, name, values.tolist(), f"[survey] vary.{name}")
         if study.sort is Sort.PAGE:
-            for name, values in plan.axes.items():  # of samples, one that is impossible is a row that says so
+            for name, values in plan.axes.items():  # not samples: an impossible one gets a row with a note
                 for value in values.tolist() if name not in study.conditions else ():
                     with refused(f"[survey] vary.{name}"):
                         model.check_value(name, value)
@@ -79,14 +79,14 @@ def plan_and_machine(study: Study) -> tuple[Plan, Any]:
 
 
 def names_of(study: Study) -> Iterable[str]:
-    """Names of all that may vary in the machine of a study."""
+    """Return the names of all parameters of a study's machine that may vary."""
     if study.sort is Sort.CATALOGUE:
         return [entry.name for entry in study.model.settable]
     return study.model.tables.quantities if study.sort is Sort.PHYSICAL else study.parameters
 
 
 def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily:
-    """The machines, or flows, of a study's survey."""
+    """Return the family of machines, or of flows, for a study's survey."""
     if study.sort is Sort.FLOW:
         assert isinstance(model, FlowProblem) and model.origin is not None
         assert not isinstance(study.state, dict)
@@ -97,7 +97,7 @@ def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily
 
 
 def machines_of(study: Study, model: Varying) -> Family:
-    """The machines of a study's survey."""
+    """Return the family of machines for a study's survey."""
     return Family(
         model, study.word, study.periods, study.guess, study.loose, study.parameter, study.within,
         study.named_state, study.tables,
@@ -105,7 +105,7 @@ def machines_of(study: Study, model: Varying) -> Family:
 
 
 def outcomes_of(study: Study) -> list[Outcome]:
-    """A survey's outcomes, the machine's own and the user's among them.
+    """Return the outcome functions of a study's survey: general ones, those of machines, and the user's.
 
     Raises
     ------
@@ -152,12 +152,12 @@ def _outcome(study: Study, said: str) -> Outcome:
 
 
 def _spelled(study: Study) -> list[str]:
-    """A survey's outcomes as they are said; the word of a built-in machine's motion as tables spell it, whichever event it began with.
+    """Return the names of a survey's outcomes, with words of built-in machines rotated to the spelling that tables use.
 
     Raises
     ------
     ValueError
-        If a motion that is to be stable has no word.
+        If the word of a motion in an outcome is impossible.
     """
 
     if study.sort in WRITTEN:
@@ -170,7 +170,7 @@ def _spelled(study: Study) -> list[str]:
             try:
                 word = Word.parse(text, frictionless=model.frictionless(params))
                 said = f"{kind}:{word.spelled(model.has_mirror(params, study.parameter))}"
-            except ValueError as error:  # a share may be that of a kind of motion
+            except ValueError as error:  # the outcome `share` accepts a kind of motion, too
                 if kind == "stable":
                     raise ValueError(f"{study.path}: [survey] outcomes: {said!r}: {error}.") from None
         found.append(said)
@@ -178,7 +178,7 @@ def _spelled(study: Study) -> list[str]:
 
 
 def asked_of(study: Study) -> dict[str, Any]:
-    """What decides the rows of a study's survey beside its plan, ready for JSON."""
+    """Return everything besides the plan that determines the rows of a study's survey, JSON-able."""
     survey = study.survey.model_dump(exclude={"vary", "atlas"})
     budget = {} if study.atlas.budget is None else {"budget": study.atlas.budget}
     atlas = {"atlas": {**study.atlas.of_results(), **budget}} if study.survey.atlas else {}
@@ -186,13 +186,13 @@ def asked_of(study: Study) -> dict[str, Any]:
 
 
 def ways_of(study: Study) -> dict[str, Any]:
-    """How each machine of a study's survey is looked at: where it is simulated, and whether an atlas is made of it."""
+    """Return the arguments of `contvines.survey` about simulations and atlases that a study sets."""
     said = {key: getattr(study.survey, key) for key in ("gaps", "values", "starts")}
     return {**said, "atlas": study.atlas.model_dump() if study.survey.atlas else None}
 
 
 def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
-    """Units of parameters and outcomes."""
+    """Return the units of parameters and outcomes, by name."""
     from orbits.flows import flow_of
 
     if not isinstance(model, Varying) or not model.units:
@@ -215,14 +215,14 @@ def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class UserOutcome:
-    """A function of a Python file; it is imported where it is called, in worker processes too."""
+    """An outcome that is a function of the user's Python file; the file is run where it is called, also in worker processes."""
 
     path: str
     function: str
 
     @property
     def loaded(self) -> Callable[[Findings], Mapping[str, float] | float] | None:
-        """The function itself."""
+        """Run the file and return the function; None if the file lacks it."""
         with refused("[survey] outcomes"):
             return getattr(module_of(self.path), self.function, None)
 
@@ -233,7 +233,7 @@ class UserOutcome:
 
 
 def _numbers(model: Physical, name: str, said: object, place: str) -> object:
-    """Quantities as numbers counted in the machine's unit."""
+    """Convert quantities in a specification of `vary` to numbers in the machine's unit."""
     from .physical_study import number_of
 
     def read(values: object, where: str, spread: int | None = None) -> object:
@@ -250,7 +250,7 @@ def _numbers(model: Physical, name: str, said: object, place: str) -> object:
 
 
 def dissipation(found: Findings) -> dict[str, float]:
-    """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a declared machine without ``energy=``."""
+    """Return the power dissipated by impacts and by friction at the largest stable response of the diagram; nan for a declared machine without ``energy=``."""
     from ..survey.outcomes import highest, stretches
 
     top = highest(stretches(found.graph))
@@ -264,9 +264,9 @@ def dissipation(found: Findings) -> dict[str, float]:
 
 
 def pumping(found: Findings) -> dict[str, float]:
-    """How long a free decay takes to lose nine tenths of its energy, and the absorber's share of what is lost.
+    """Return the time in which a free decay loses nine tenths of its energy, and the absorber's share of the loss.
 
-    It starts from the displacement that is the largest of the stable responses of the diagram, the absorber at rest in the middle.
+    The decay begins at the largest stable response of the diagram as displacement, with the absorber at rest in the middle of its cavity.
     """
     from orbits.design.transients import free_decay
     from orbits.machines.base import Model

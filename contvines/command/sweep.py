@@ -1,4 +1,4 @@
-"""`contvines sweep`: brute-force simulation over the continuation parameter, and its picture, alone or over the branches of a graph."""
+"""`contvines sweep`: simulation at one value after another of the continuation parameter, and its picture, alone or over the branches of a graph."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def sweep(
 
 
 def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]:
-    """All rows, each written to the file as soon as it is there; those of an unfinished run are not repeated."""
+    """Compute all rows of a sweep; each is written to the file at once, and rows of an unfinished run are reused."""
     import numpy as np
 
     from orbits.attractors.sweeping import sweep as simulate
@@ -118,7 +118,7 @@ def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]
 
 
 def _summary(rows: list[Kept], study: Study) -> str:
-    """Runs of equal attractors, one line each, and what is modulated."""
+    """Return the summary of a sweep: a line for each interval with the same attractor, and one about modulation."""
     from itertools import groupby
 
     from ..graph.table import short_word
@@ -143,12 +143,12 @@ def _summary(rows: list[Kept], study: Study) -> str:
 
 
 def graph_beneath(path: Path, study: Study) -> Graph:
-    """The graph of a file, if it is one of the study's machine in the study's parameter.
+    """Load the graph to draw below a sweep; it must be of the study's machine and parameter.
 
     Raises
     ------
     ValueError
-        With a sentence that names the fields that differ and their values.
+        If it is not; the message names the fields that differ and their values.
     """
     graph = load_file(path)
     if graph.parameter != study.parameter:
@@ -168,7 +168,7 @@ def graph_beneath(path: Path, study: Study) -> Graph:
 
 
 def _graph_machine(graph: Graph) -> dict[str, Any]:
-    """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
+    """Return name and parameters of a graph's machine; the parameters of the excitation come from its branches."""
     from orbits.flows import machine_of
     from orbits.machines.names import NAMES
 
@@ -208,7 +208,7 @@ def _shown(value: object) -> str:
 def picture(
     rows: list[Kept], study: Study, graph: Graph | None, size: tuple[float, float] | None = None
 ) -> Figure:
-    """The attractors of a sweep as dots, over a graph if there is one."""
+    """Draw the attractors of a sweep as dots, over a graph if there is one."""
     from orbits.flows import flow_of
 
     from ..plots.sweep import plot_sweep
@@ -224,7 +224,7 @@ def picture(
     measure = flow_of(model).default_measure(model)
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
-        # bands are of displacements
+        # only displacements have a band
         bands: list[Any] = [(row.value, *row.band) for row in rows if row.band and measure.startswith("max_")]
         return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, bands=bands, **look)
     first: list[tuple[float, float]] = []
@@ -238,7 +238,7 @@ def picture(
 
 
 def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:
-    """Word, parameter values and B at the word's first impact of every branch that has one."""
+    """Return word, parameter values and B at the word's first impact of every branch with an impact."""
     from orbits.words import Word
 
     from ..graph.stretches import measured
@@ -254,10 +254,10 @@ def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:
 
 
 def _drawn_impact(row: Kept, lines: list[tuple[Any, Any, Any]]) -> int | None:
-    """Which of a motion's impacts is the first one of its branch's word, whose B the branch's line shows.
+    """Return the index of the impact of a motion that corresponds to the first impact of its branch's word, whose B the branch's line shows.
 
-    Where a rotation or the mirror image of the word is the word again, several impacts may be: the mirror
-    image of an asymmetric orbit is the same orbit, and the line shows the nearest. None if no branch has the word.
+    If a rotation or the mirror image of the word equals the word, several impacts are possible, also as the mirror image of an
+    asymmetric orbit lies on the same branch; the impact nearest to the line is taken. None if no branch has the word.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""The rows of a sweep: the CSV, and beside it the journal from which an unfinished sweep goes on."""
+"""The rows of a sweep: the CSV file, and beside it the journal from which an unfinished sweep resumes."""
 
 from __future__ import annotations
 
@@ -26,17 +26,24 @@ LAST = ("modulation", "symmetric", "nodes")
 
 @dataclass(frozen=True)
 class Kept:
-    """One value of a sweep as it is kept.
+    """A row of a sweep: one value of the parameter and the motion there.
 
     Attributes
     ----------
-    cells : text of the CSV's columns.
-    attractor : kind of the motion, `sliding` distinguished from `periodic`.
-    recurrent : whether the motion recurs.
-    modulation : how it is modulated; see `contvines.shared.motions`.
-    band : lowest, mean and highest of its largest responses in each forcing period; empty where it has none.
-    dots : what a picture shows: the largest |q1|, or B at every impact (from the word's first on, where there is one).
-    state : state reached, from which the next value goes on.
+    cells : list of str
+        The row of the CSV file.
+    attractor : str
+        Kind of the motion; `sliding` is distinguished from `periodic`.
+    recurrent : bool
+        Whether the motion recurs.
+    modulation : str
+        Its modulation; see `contvines.shared.motions`.
+    band : list of float
+        Lowest, mean and highest of the largest response per forcing period; empty without modulation.
+    dots : list of float
+        Numbers that a picture shows: the largest |q1|, or B at every impact (beginning with the first one of the word, if there is a word).
+    state : list of float
+        The final state, from which the next value continues.
     """
 
     cells: list[str]
@@ -61,7 +68,7 @@ class Kept:
 
 
 def kept(row: SweepRow, direction: str, names: list[str]) -> Kept:
-    """A row of `orbits.attractors.sweep` as it is kept; `names` are the measures in the CSV's order."""
+    """Convert a row of `orbits.attractors.sweep`; `names` are the measures in the order of the CSV's columns."""
     found, guess = row.detail, row.detail.guess
     kind = "periodic" if row.attractor == "sliding" else row.attractor
     cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
@@ -77,7 +84,7 @@ def kept(row: SweepRow, direction: str, names: list[str]) -> Kept:
 
 
 def rows_as_json(rows: list[Kept], study: Study) -> dict[str, Any]:
-    """The CSV's content as JSON, numbers at full precision, and the share of the values at which the motion is modulated, by its kind."""
+    """Return the content of the CSV ready for JSON, at full precision, and the share of the values with modulated motions, by kind."""
     names = measured_names(study)
     kinds = dict.fromkeys(row.modulation for row in rows if row.modulation)
     return {
@@ -88,14 +95,14 @@ def rows_as_json(rows: list[Kept], study: Study) -> dict[str, Any]:
 
 
 def measured_names(study: Study) -> list[str]:
-    """The measures of the rows, in the order of the CSV."""
+    """Return the names of the measures in the rows, in the order of the CSV's columns."""
     from orbits.attractors.attractor import measure_names
 
     return [name for name in measure_names(machine(study)) if name not in FIRST]
 
 
 def _read(cell: str) -> object:
-    """A cell of the CSV as JSON has it."""
+    """Convert a cell of the CSV to a JSON value."""
     try:
         return json.loads(cell)
     except ValueError:
@@ -103,22 +110,24 @@ def _read(cell: str) -> object:
 
 
 def journal_of(target: Path) -> Path:
-    """Where the rows of an unfinished sweep or survey are kept."""
+    """Return the path of the journal of an unfinished sweep or survey."""
     return target.with_name(target.name + ".unfinished")
 
 
 def refuse_another(target: Path, header: dict[str, str]) -> None:
-    """Refuse to lose the rows of an unfinished run of another study.
+    """Raise an error if the journal beside a file has rows of another study, which would be lost.
 
     Parameters
     ----------
     target : Path
+        The result's file.
     header : dict
         First line of this study's journal.
 
     Raises
     ------
     ValueError
+        If it has.
     """
     count = row_journal.rows_of_another(journal_of(target), header)
     if count:
@@ -129,9 +138,9 @@ def refuse_another(target: Path, header: dict[str, str]) -> None:
 
 
 class Rows(row_journal.Rows[Kept]):
-    """The rows of a sweep on disk, each kept as soon as it is there.
+    """The rows of a sweep on disk, each written at once.
 
-    The CSV is for the user. The journal beside it (`FILE.csv.unfinished`) also has the states, and goes when the sweep is finished.
+    The CSV file is for the user. The journal beside it (`FILE.csv.unfinished`) has the states, too; it is deleted when the sweep is finished.
     """
 
     def __init__(self, target: Path, study: Study, down: bool) -> None:
@@ -158,7 +167,7 @@ class Rows(row_journal.Rows[Kept]):
         return self
 
     def keep(self, row: Kept) -> None:
-        """Write one more row."""
+        """Add a row and write it to both files."""
         self._write(row.cells)
         super().keep(row)
 
@@ -174,6 +183,6 @@ class Rows(row_journal.Rows[Kept]):
 
 
 def header_of(study: Study, down: bool) -> dict[str, str]:
-    """First line of a sweep's journal, with a digest of all that decides its rows: runs that must give the same CSV share it."""
+    """Return the first line of a sweep's journal, with a digest of everything that determines its rows; equal for runs with equal results."""
     decides = {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}
     return {"contvines": "unfinished sweep", "of": digest_of(decides)}

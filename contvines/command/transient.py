@@ -1,4 +1,5 @@
-"""`contvines transient STUDY.toml`: a start-up, a free decay, or the answer to a recorded motion of the base, with the absorber and without; the same of declared machines."""
+"""`contvines transient STUDY.toml`: a start-up, a free decay, or the response to a recorded base motion, with and without the absorber;
+likewise for declared machines."""
 
 from __future__ import annotations
 
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
     from orbits.design.transients import StartUp
 
 
-FARTHEST = 10.0  # metres that an oscillator is pulled aside
-HARDEST = 100_000.0  # m/s^2 that a base is accelerated by
-LONGEST = 100_000.0  # that a motion is followed after a record, in radians of the oscillator
+FARTHEST = 10.0  # metres: largest initial displacement of a free decay
+HARDEST = 100_000.0  # m/s^2: largest recorded acceleration of the base
+LONGEST = 100_000.0  # longest simulation after a record, in radians of the oscillator
 
 
 def transient(
@@ -236,7 +237,7 @@ def _share(seen: StartUp | Response) -> tuple[str, float, str, str]:
 
 
 def _motion(title: str, scales: Scales, rows: Rows, seen: StartUp | Response) -> Told:
-    """A simulated motion with the absorber and without, in the study's units."""
+    """Convert a simulated motion with and without the absorber to the study's units."""
     series: Series = [
         ("time", "time", seen.times),
         ("oscillator", "length", seen.oscillator),
@@ -247,7 +248,7 @@ def _motion(title: str, scales: Scales, rows: Rows, seen: StartUp | Response) ->
 
 
 def _run_up(study: Study, begin: str | None, over: str | None, second: str) -> tuple[float, float] | None:
-    """`--from`, counted as the study counts its frequency, and `--over`, in its unit of time."""
+    """Return the first frequency (`--from`) and the duration (`--over`) of a run-up, in the study's units; None without a run-up."""
     if begin is None or over is None:
         return None
     name = study.model.default_parameter if study.sort is not Sort.PAGE else study.model.phase_rate
@@ -267,7 +268,7 @@ def _run_up(study: Study, begin: str | None, over: str | None, second: str) -> t
 def of_page(
     study: Study, release: str | None, begin: str | None, over: str | None, within: str | None
 ) -> Told:
-    """A transient of a declared machine: its states, its impacts and what these and friction take."""
+    """Compute a transient of a declared machine: its states, its impacts, and the energy that impacts and friction dissipate."""
     from orbits.design.page_transients import page_transient
     from orbits.machines.page.si import CONTACT
 
@@ -313,7 +314,7 @@ def of_page(
 
 
 def _states(study: Study, text: str) -> dict[str, float]:
-    """`--release` of a declared machine: states by name."""
+    """Parse `--release` of a declared machine to states by name."""
     from ..shared.near_names import did_you_mean
 
     machine, found = study.model, {}
