@@ -58,7 +58,16 @@ FACTORIES = {
     "orbits.machines.declared.stored:rebuild": "orbits.problem:rebuild",
 }
 """Functions that rebuild problems from descriptions: name in a file -> the function's place; names of earlier versions are kept for their files."""
-_ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
+_SUB_PACKAGES = (
+    "attractors",
+    "design",
+    "machines",
+    "multiple_scales",
+    "simulation",
+    "symbols",
+    "theory",
+    "words",
+)
 __getattr__ = on_demand(
     __name__,
     {
@@ -77,7 +86,7 @@ __getattr__ = on_demand(
         "WordError": "orbits.words.alphabet",
         "coupled_two": "orbits.machines.coupled_two",
         "structure": "orbits.machines.structure",
-        **{room: f"orbits.{room}" for room in _ROOMS},
+        **{name: f"orbits.{name}" for name in _SUB_PACKAGES},
     },
 )
 

@@ -150,10 +150,3 @@ def load_names(e: Equations, parameters: Collection[str]) -> tuple[str, ...]:
         found += ["impact_energy", "impact_loss", "mean_force"]
         found += ["peak_force"] if CONTACT in parameters else []
     return (*found, *(["friction_loss"] if e.force else []), *(["work_rate"] if found or e.force else []))
-
-
-UNITS = {
-    "impact_rate": "Hz", "impulse": "N s", "impact_energy": "J", "impact_loss": "J", "friction_loss": "J", "mean_force": "N",
-    "work_rate": "W", "peak_force": "N",
-}  # fmt: skip
-"""Units of these measures; ``impulse_R`` has that of ``impulse``."""
