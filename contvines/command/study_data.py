@@ -99,7 +99,7 @@ class Study:
     model, flow
         The machine or the flow; the other one is None.
     loose : dict
-        Values of the machine's parameters that belong to an orbit, not to the machine, such as those of the excitation.
+        Values of the parameters that are given with each orbit, not to the machine's constructor; for declared machines all parameters.
     box : list or None
         Ranges of the starts of a flow.
     sweep, atlas, chart, survey, random
