@@ -71,7 +71,7 @@ def checked(journal: Journal) -> Journal:
     ]
     if missing:
         raise ValueError(
-            f"journal = {journal!r} has no method {missing[0]!r}; an object with recall, record and checkpoint is asked for, "
+            f"journal = {journal!r} has no method {missing[0]!r}; give an object with recall, record and checkpoint, "
             'such as contvines.resume("FILE.vines")'
         )
     return journal

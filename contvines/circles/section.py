@@ -52,7 +52,7 @@ class Watched(Protocol):
 
 @runtime_checkable
 class Walled(Protocol):
-    """A section of motions that rebound from walls (item 7)."""
+    """A section of motions that rebound from walls: it has `struck`, item 7 of the contract at the top of this module."""
 
     def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
 
