@@ -9,7 +9,7 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
@@ -26,9 +26,7 @@ ROUTE = [
 
 @pytest.fixture(scope="module")
 def graph():
-    return cv.diagram(
-        ABSORBER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=3
-    )
+    return absorber_graph(0.55, (0.17, 1.27), depth=3)
 
 
 def route(graph):

@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.shared.motions import marginal_text, onto_circle
 from tests.contvines.loci.systems import bautin
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 
 
 def test_a_cycle_and_an_equilibrium():
@@ -29,7 +29,7 @@ def test_another_eigenvalue_decides(rate, stable):
 
 def test_motions_of_a_machine(run):
     """Phase and velocity contract by R^2 at each of two impacts, so that one multiplier is R^4 where the other is 1."""
-    graph = cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.6), over="amplitude", within=(0.17, 1.0), depth=1)
+    graph = absorber_graph(0.6, (0.17, 1.0), depth=1)
     for label in ("LP1", "SB1"):
         orbit = graph[label].orbit
         assert orbit.stable is None

@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.coexistence.census import look, missing_text
 from orbits.attractors import find_attractor
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 pytestmark = pytest.mark.slow
 
@@ -75,7 +75,7 @@ def test_mirror_twins_are_one_motion_with_two_shares():
 
 
 def test_the_look_says_what_a_diagram_lacks():
-    graph = cv.diagram(ABSORBER.symmetric_orbit(0.6), over="amplitude", within=(0.5, 1.3), depth=3)
+    graph = absorber_graph(0.6, (0.5, 1.3), depth=3)
     found = look(graph, ABSORBER.population("amplitude"))
     assert any(a.value > 1.1 for a in found)
     assert "contvines atlas x.toml" in missing_text(graph, "x.toml")

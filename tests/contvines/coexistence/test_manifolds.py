@@ -7,8 +7,9 @@ import pytest
 
 import contvines as cv
 from contvines.coexistence.manifolds import stable_manifolds
+from tests.contvines.loci.systems import henon_of
 from tests.contvines.studies import PAPER
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 pytestmark = pytest.mark.slow
 
@@ -33,16 +34,13 @@ def test_a_parabola(slow):
 
 
 def test_points_of_henons_manifold_fall_into_the_saddle():
-    def henon(x, p):
-        return [1.0 - p * x[0] ** 2 + x[1], 0.3 * x[0]]
-
     x = (-0.7 + np.sqrt(0.49 + 5.6)) / 2.8
-    for half in halves_of(henon, [0.63, 0.19], 1.4, (2.0, 2.0)):
+    for half in halves_of(henon_of, [0.63, 0.19], 1.4, (2.0, 2.0)):
         for point in half.points[:: max(1, len(half.points) // 20)]:
             nearest = np.inf
             for _ in range(30):
                 nearest = min(nearest, float(np.hypot(point[0] - x, point[1] - 0.3 * x)))
-                point = henon(point, 1.4)
+                point = henon_of(point, 1.4)
                 if np.abs(point).max() > 10.0:
                     break
             assert nearest < 5e-3
@@ -50,7 +48,7 @@ def test_points_of_henons_manifold_fall_into_the_saddle():
 
 @pytest.fixture(scope="module")
 def graph():
-    return cv.diagram(ABSORBER.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 0.8), depth=1)
+    return absorber_graph(0.55, (0.17, 0.8), depth=1)
 
 
 def test_the_two_sides_of_a_manifold_reach_different_motions(graph):

@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.loci.systems import henon_of
 
 pytestmark = pytest.mark.slow
-
-
-def henon(x, p):
-    return [1 - p * x[0] ** 2 + x[1], 0.3 * x[0]]
 
 
 def staying(x, y):
@@ -22,7 +19,7 @@ def staying(x, y):
 
 @pytest.fixture(scope="module")
 def population():
-    return cv.MapProblem(henon, [0.6, 0.2], 1.4).population(box=[(-2, 2), (-2, 2)])
+    return cv.MapProblem(henon_of, [0.6, 0.2], 1.4).population(box=[(-2, 2), (-2, 2)])
 
 
 def test_the_basin_of_henons_attractor(population):

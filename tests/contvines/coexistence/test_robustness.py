@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +26,7 @@ def test_the_smallest_kick_of_a_map_is_the_distance_to_its_boundary():
 
 @pytest.fixture(scope="module")
 def graph():
-    return cv.diagram(ABSORBER.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=1)
+    return absorber_graph(0.55, (0.17, 1.27), depth=1)
 
 
 def test_a_kick_leads_elsewhere_and_a_smaller_one_does_not(graph):

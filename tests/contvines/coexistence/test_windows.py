@@ -5,23 +5,20 @@ import pytest
 
 import contvines as cv
 from orbits.attractors import find_attractor
+from tests.contvines.loci.systems import henon_of
 from tests.machines import ABSORBER
 from tools.attractors.isolas import window
 
 pytestmark = pytest.mark.slow
 
 
-def henon(x, p):
-    return [1 - p * x[0] ** 2 + x[1], 0.3 * x[0]]
-
-
 def test_the_cycles_in_henon_s_attractor_are_as_many_as_are_published():
     """For a = 1.4, b = 0.3: 1, 1, 0, 1, 0, 2 cycles of 1 to 6 points (O. Biham, W. Wenzel, Phys. Rev. Lett. 63 (1989) 819)."""
-    population = cv.MapProblem(henon, [0.6, 0.2], 1.0).population(box=[(-2.0, 2.0), (-2.0, 2.0)])
+    population = cv.MapProblem(henon_of, [0.6, 0.2], 1.0).population(box=[(-2.0, 2.0), (-2.0, 2.0)])
     cycles = [u.reshape(-1, 2) for _, u in population.embedded(np.array([0.1, 0.1]), 1.4)]
     assert [sum(len(points) == n for points in cycles) for n in range(1, 7)] == [1, 1, 0, 1, 0, 2]
     for points in cycles:
-        images = np.array([henon(x, 1.4) for x in points])
+        images = np.array([henon_of(x, 1.4) for x in points])
         assert np.abs(images - np.roll(points, -1, axis=0)).max() < 1e-7
 
 

@@ -5,6 +5,7 @@ import pytest
 
 import contvines as cv
 from tests.contvines import fakes
+from tests.contvines.loci.systems import henon
 
 pytest.importorskip("pandas")
 
@@ -33,9 +34,7 @@ def test_a_graph_as_a_data_set_has_every_point_of_every_branch(graph):
 
 
 def test_a_chart_as_a_frame_has_every_point_of_every_locus():
-    problem = cv.MapProblem(
-        lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]], [0.63, 0.19], {"a": 0.2, "b": 0.3}
-    )
+    problem = cv.MapProblem(henon, [0.63, 0.19], {"a": 0.2, "b": 0.3})
     chart = cv.chart(cv.diagram(problem, within=(0.0, 0.6), depth=0), "b", (0.1, 0.5), regions=False)
     frame = chart.to_pandas()
     flips = frame[frame["kind"] == "period-doubling"]

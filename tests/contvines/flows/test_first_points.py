@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tests.contvines.flows.shooting import nerve
 from tools.flow_demos.listed import DEMOS
 
 pytestmark = pytest.mark.slow
@@ -50,13 +49,3 @@ def test_cycles_beside_a_strong_saddle_begin_where_rounding_tells_their_paramete
     first = (change > 1e-9) & (change < 1e-7)
     sizes = np.ptp(cycles.points[first][:, : cycles.problem.states : 4], axis=1)
     assert first.sum() > 5 and np.ptp(change[first] / sizes**2) < 0.02 * (change[first] / sizes**2).max()
-
-
-def test_no_fold_beside_a_hopf_point_by_the_rounding_of_the_phase():
-    """FitzHugh and Nagumo's nerve beside its generalized Hopf point (I = 17/24, e = 15/16): cycles have one fold."""
-    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"current": 0.70, "e": 0.9374})
-    graph = cv.diagram(flow, over="current", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
-    ((hopf,), (fold,)) = graph.of_kind("hopf"), graph.of_kind("fold")
-    # the one that is left is far beyond what is known of both
-    assert hopf.value - fold.value > 100.0 * (hopf.location_error + fold.location_error)
-    assert not graph.unresolved

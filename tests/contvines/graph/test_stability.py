@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 
 def test_marginal_end_takes_the_stability_of_its_neighbour():
@@ -16,8 +16,7 @@ def test_marginal_end_takes_the_stability_of_its_neighbour():
 
 def test_one_border_reached_from_two_branches():
     """At the depth limit neither branch crosses the border at which both end; it still is one point."""
-    seed = ABSORBER.symmetric_orbit(amplitude=0.55)
-    graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
+    graph = absorber_graph(0.55, (0.2, 1.3), depth=3)
     (point,) = [p for p in graph.special.values() if abs(p.value - 1.14411783723) < 1e-9]
     (tie,) = [switch for switch in graph.switches if switch.point == point.label]
     on = {branch.label for branch in graph if any(label == point.label for _, label in branch.marks)}

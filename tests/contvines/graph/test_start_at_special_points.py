@@ -5,12 +5,12 @@ import pytest
 
 import contvines as cv
 from tests.contvines.loci.systems import cusp
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 
 @pytest.fixture(scope="module")
 def graph():
-    return cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.2), depth=2)
+    return absorber_graph(0.55, (0.17, 1.2), depth=2)
 
 
 @pytest.mark.slow

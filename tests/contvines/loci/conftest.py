@@ -2,11 +2,10 @@
 
 import pytest
 
-import contvines as cv
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 
 
 @pytest.fixture(scope="session")
 def absorber():
     """The symmetric motion of the reduced absorber and what leaves it."""
-    return cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 1.3))
+    return absorber_graph(0.55, (0.2, 1.3))

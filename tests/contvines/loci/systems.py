@@ -48,6 +48,11 @@ def henon(x, p):
     return [1 + x[1] - p.a * x[0] ** 2, p.b * x[0]]
 
 
+def henon_of(x, a):
+    """The same with b = 0.3, its only parameter a."""
+    return [1 - a * x[0] ** 2 + x[1], 0.3 * x[0]]
+
+
 def cusp(x, p):
     """x' = b + (a - 1/3) x - x^3: folds from a = 1/3 on, where their cusp is, at b = 0."""
     return [p.b + (p.a - 1 / 3) * x[0] - x[0] ** 3]

@@ -81,7 +81,11 @@ def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
     """At x = -1/2: with f the cubic and b = 0.8 the first Lyapunov coefficient is zero where the third derivative is -b / (1 - e b^2) times the second one's square."""
     flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"current": 0.70, "e": 0.9374})
     graph = cv.diagram(flow, over="current", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
-    locus = cv.locus(graph["LP1"], over="e", within=(0.9373, 0.938))
+    # the only one, far beyond what is known of both
+    ((hopf,), (fold,)) = graph.of_kind("hopf"), graph.of_kind("fold")
+    assert hopf.value - fold.value > 100.0 * (hopf.location_error + fold.location_error)
+    assert not graph.unresolved
+    locus = cv.locus(fold, over="e", within=(0.9373, 0.938))
     assert locus.ended[1] == "the motion becomes an equilibrium, at current = 0.7083333333, e = 0.9375"
     (point,) = locus.points.values()
     assert point.kind == "generalized-hopf"

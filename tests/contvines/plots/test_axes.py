@@ -25,6 +25,7 @@ from contvines.plots.measured import plot_calibration, plot_transient
 from contvines.survey import Plan
 from contvines.survey.results import Survey
 from tests.contvines import fakes
+from tests.contvines.loci.systems import henon
 
 TIME = np.linspace(0.0, 1.5, 400)
 DECAY = [
@@ -38,10 +39,8 @@ DOTS = [(x, x**2) for x in np.linspace(0, 1, 20)]
 
 @cache
 def basins():
-    henon = cv.MapProblem(
-        lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]], [0.63, 0.19], {"a": 0.2, "b": 0.3}
-    )
-    return cv.basins(henon.population(box=[(-2, 2), (-2, 2)]), at=0.2, points=8)
+    problem = cv.MapProblem(henon, [0.63, 0.19], {"a": 0.2, "b": 0.3})
+    return cv.basins(problem.population(box=[(-2, 2), (-2, 2)]), at=0.2, points=8)
 
 
 @cache

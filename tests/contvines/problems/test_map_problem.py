@@ -4,14 +4,11 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines.loci.systems import henon_of
 
 
 def logistic(x, r):
     return r * x * (1 - x)
-
-
-def henon(x, a):
-    return np.array([1 - a * x[0] ** 2 + x[1], 0.3 * x[0]])
 
 
 def values(graph, kind):
@@ -48,7 +45,7 @@ def test_logistic_two_cycle_is_the_closed_form(cascade):
 def test_henon_cascade():
     """b = 0.3: fold -(1-b)^2/4, doublings 3(1-b)^2/4 and (1-b)^2 + (1+b)^2/4 exactly; then 1.02585541, 1.05112566
     (Derrida, Gervois, Pomeau, J. Phys. A 12 (1979) 269)."""
-    graph = cv.diagram(cv.MapProblem(henon, [0.7, 0.2], 0.2, parameter="a"), within=(-0.2, 1.1), depth=3)
+    graph = cv.diagram(cv.MapProblem(henon_of, [0.7, 0.2], 0.2, parameter="a"), within=(-0.2, 1.1), depth=3)
     assert values(graph, "fold") == pytest.approx([-0.1225], abs=1e-13)
     found = values(graph, "period-doubling")
     assert found[:2] == pytest.approx([0.3675, 0.9125], abs=1e-12)

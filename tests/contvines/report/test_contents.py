@@ -12,13 +12,12 @@ import contvines as cv
 from contvines.report.contents import contents
 from contvines.report.page import write_report
 from tests.contvines import fakes
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 
 
 @pytest.fixture(scope="module")
 def graph():
-    seed = ABSORBER.symmetric_orbit(0.55)
-    return cv.diagram(seed, over="amplitude", within=(0.4, 0.8), depth=1)
+    return absorber_graph(0.55, (0.4, 0.8), depth=1)
 
 
 def test_curves_special_points_and_orbits_are_the_graphs(graph):

@@ -11,7 +11,7 @@ from orbits import Absorber, Cavity, Coupled
 from orbits.flows import simulator_of
 from orbits.simulation.replaying import monodromy
 from orbits.starts.find import polish
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 pytestmark = pytest.mark.slow
 
@@ -111,7 +111,7 @@ def test_limits_at_borders(name):
 
 def test_at_a_graze_a_multiplier_is_infinite_and_the_other_one_is_none():
     """Towards a wall that is touched without speed that of half the motion grows as the speed's inverse; their product is bounded."""
-    graph = cv.diagram(ABSORBER.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 1.1), depth=0)
+    graph = absorber_graph(0.55, (0.2, 1.1), depth=0)
     end, value = graph["WG1"].orbit, graph["WG1"].value
     grown, gone = end.multipliers
     assert grown == complex(np.inf) and gone == pytest.approx(0.0, abs=1e-12)

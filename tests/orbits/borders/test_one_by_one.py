@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 
 
 def targets(graph, point):
@@ -61,8 +61,7 @@ def test_symmetry_breaks_at_a_border():
 
 def test_persistence_is_told_from_a_fold():
     """The note of each crossing agrees with the sides on which the two branches are."""
-    start = ABSORBER.symmetric_orbit(amplitude=0.55)
-    graph = cv.diagram(start, over="amplitude", within=(0.17, 1.27), depth=3)
+    graph = absorber_graph(0.55, (0.17, 1.27), depth=3)
     told = [s for s in graph.switches if "persistence" in s.note or "nonsmooth fold" in s.note]
     for switch in told:
         value = graph[switch.point].value

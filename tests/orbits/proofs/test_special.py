@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
-import contvines as cv
 from orbits import Cavity
 from orbits.proofs.checker import Refused, check
 from orbits.proofs.obstacles import ProofError
-from tests.machines import ABSORBER, COUPLED
+from tests.machines import ABSORBER, COUPLED, absorber_graph
 from tests.orbits.proofs.papers import checked, holds
 
 pytestmark = pytest.mark.slow
@@ -18,8 +17,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def graph():
-    seed = ABSORBER.symmetric_orbit(amplitude=0.6)
-    return cv.diagram(seed, over="amplitude", within=(0.24, 0.9), depth=1)
+    return absorber_graph(0.6, (0.24, 0.9), depth=1)
 
 
 def proof_of(kind, orbit, parameter="amplitude", **options):

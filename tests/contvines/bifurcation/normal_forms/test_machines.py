@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from tests.machines import ABSORBER, COUPLED
+from tests.machines import ABSORBER, COUPLED, absorber_graph
 
 pytestmark = pytest.mark.slow
 
@@ -24,7 +24,7 @@ def first_node_apart(problem, u):
 @pytest.fixture(scope="module")
 def graphs():
     return {
-        ABSORBER: cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 1.16)),
+        ABSORBER: absorber_graph(0.7, (0.6, 1.16)),
         COUPLED: cv.diagram(
             COUPLED.orbit("LR", frequency=1.01), over="frequency", within=(0.999, 1.02), depth=1
         ),

@@ -1,4 +1,4 @@
-"""The absorber on its oscillator, inclined: against a page of the same machine, the inclined cavity, energy and hand-made formulas."""
+"""The absorber on its oscillator, inclined: against a page of the same machine, energy and hand-made formulas."""
 
 import json
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Cavity, Coupled, DryFriction, Machine
+from orbits import Coupled, DryFriction, Machine
 from orbits.problem import rebuild
 from orbits.symbols import cos, sin
 from tests.machines import STRONG
@@ -47,23 +47,6 @@ def test_the_page_has_the_same_orbits_and_special_points():
         zip(*sorted((p.kind, p.value) for p in graph.special.values())) for graph in graphs
     )
     assert kinds == others and len(kinds) > 1 and values == pytest.approx(elsewhere, abs=1e-10)
-
-
-def test_a_light_absorber_is_the_inclined_cavity():
-    # without an absorber that matters the oscillator moves as q1 = C sin(Omega tau)
-    eps, omega = 1e-11, 0.7
-    light = Coupled(
-        forcing=0.9 / eps * (1.0 - omega**2), frequency=omega, damping=0.0, mass_ratio=eps,
-        restitution=0.7, friction=0.3, gravity=0.2, slope=0.25,
-    )  # fmt: skip
-    cavity = Cavity(restitution=0.7, friction=0.3, gravity=0.2, slope=0.25, frequency=omega)
-    alone = cavity.attractor({"w": 0.1}, amplitude=0.9).orbit
-    phase = alone.nodes[:, 0]
-    guess = np.column_stack([alone.nodes, 0.9 * np.sin(phase), 0.9 * omega * np.cos(phase)])
-    orbit = light.orbit(alone.spelling, alone.periods, guess)
-    assert np.abs(orbit.nodes[:, :2] - alone.nodes).max() < 1e-8
-    own = sorted(map(abs, orbit.multipliers), key=lambda m: abs(m - 1.0))[2:]  # the oscillator's are 1
-    assert sorted(own) == pytest.approx(sorted(map(abs, alone.multipliers)), abs=1e-7)
 
 
 def test_it_rests_up_to_the_angle_of_friction():
