@@ -1,6 +1,5 @@
 """Every example and every teaching study runs, and its special points are those of closed forms and of the literature."""
 
-import csv
 import runpy
 from math import hypot, pi, sqrt
 from pathlib import Path
@@ -9,6 +8,7 @@ import numpy as np
 import pytest
 
 from contvines.store import load
+from tests.contvines.studies import table
 from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
@@ -162,6 +162,5 @@ def test_every_study_is_checked_and_every_teaching_study_told():
 
 def test_a_ball_on_a_table_begins_to_bounce_where_the_table_falls_faster_than_it(study):
     study("sweep", "bouncing_ball")
-    with open("bouncing_ball-sweep.csv") as file:
-        rows = list(csv.DictReader(file))
+    rows = table("bouncing_ball-sweep.csv")
     assert rows and all((row["attractor"] == "stuck") == (float(row["value"]) < 1.0) for row in rows)

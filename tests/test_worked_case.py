@@ -1,6 +1,5 @@
 """The worked case of `examples/design`: its study is read, a small survey of it is made, and a choice follows."""
 
-import csv
 import json
 from contextlib import nullcontext
 from dataclasses import replace
@@ -17,6 +16,7 @@ from contvines.command.survey_study import plan_and_machine
 from orbits.attractors.sweeping import sweep
 from orbits.design import choice
 from orbits.settings import DESIGNING
+from tests.contvines.studies import table
 
 pytestmark = pytest.mark.slow
 
@@ -72,9 +72,7 @@ def test_the_choice_is_at_worst_as_good_as_the_worst_of_every_sample_of_the_surv
     monkeypatch.setattr(choice, "DESIGNING", replace(DESIGNING, accuracy=0.02))  # of the interval
     run(*words, "--json", "--plot", "best.png")
     about = json.loads(capsys.readouterr().out)
-    with open("case-survey.csv") as file:
-        rows = list(csv.DictReader(file))
-    worst = {}
+    rows, worst = table("case-survey.csv"), {}
     for row in rows:
         place = float(row["half_width [mm]"])
         worst[place] = max(worst.get(place, 0.0), float(row["peak [mm]"]))

@@ -1,5 +1,6 @@
 """Studies that many tests begin with, and how a test changes one."""
 
+import csv
 import tomllib
 from functools import reduce
 from pathlib import Path
@@ -112,3 +113,9 @@ def lay(study, change):
             lay(study[name], value)
         else:
             study[name] = value
+
+
+def table(path):
+    """The rows of a file that a study has written."""
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))

@@ -9,6 +9,7 @@ import contvines as cv
 from contvines.graph.persistence import same_graph
 from contvines.survey import survey
 from orbits import Absorber
+from tests.contvines.loci.systems import henon_of
 
 
 class Interrupting:
@@ -24,8 +25,7 @@ class Interrupting:
 
 
 def henon():
-    f = lambda x, p: [1.0 - p.a * x[0] ** 2 + x[1], 0.3 * x[0]]  # noqa: E731
-    return cv.MapProblem(f, [0.6, 0.2], {"a": 0.2}, parameter="a")
+    return cv.MapProblem(henon_of, [0.6, 0.2], 0.2, parameter="a")
 
 
 def diagram(**options):

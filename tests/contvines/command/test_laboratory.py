@@ -1,14 +1,12 @@
 """A panel in a laboratory: `contvines transient`, `calibrate`, `random` and `design` against another integrator and closed forms."""
 
-import csv
-
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
 from contvines.command.calibrate import calibration_text
 from orbits.design.calibration import Calibration
-from tests.contvines.studies import EXAMPLES, PAPER, TWO
+from tests.contvines.studies import EXAMPLES, PAPER, TWO, table
 from tests.orbits.design.laboratory import FREQUENCY, RATIO, STUDY, measurement
 
 G = 9.80665
@@ -27,9 +25,7 @@ def told(run, tmp_path):
 
 
 def columns(path, *names):
-    with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    return (np.array([float(row[name]) for row in rows]) for name in names)
+    return (np.array([float(row[name]) for row in table(path)]) for name in names)
 
 
 # ---------------------------------------------------------------- transient

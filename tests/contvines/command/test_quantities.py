@@ -1,7 +1,5 @@
 """Studies in kilograms, millimetres and hertz, over conditions and within bounds: read, continued and shown."""
 
-import csv
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,7 @@ from contvines.command.recommend import _target
 from contvines.command.study import check_study
 from contvines.command.survey_study import units_of
 from contvines.store import load
-from tests.contvines.studies import PAPER, SI, TWO, WARM, data
+from tests.contvines.studies import PAPER, SI, TWO, WARM, data, table
 
 
 def study(changes="", text=SI):
@@ -86,11 +84,6 @@ def test_tables_json_and_csv_speak_the_study_s_units(run, tmp_path):
     rows = table(tmp_path / "case-sweep.csv")
     assert "max_abs_q1 [mm]" in rows[0]
     assert [float(row["value [Hz]"]) for row in rows] == pytest.approx([7.5, 7.85, 8.2])
-
-
-def table(path):
-    with path.open(newline="") as file:
-        return list(csv.DictReader(file))
 
 
 # ---------------------------------------------------------------- conditions

@@ -1,12 +1,11 @@
 """`contvines sweep`: its rows lead to starts."""
 
-import csv
 import json
 
 import numpy as np
 import pytest
 
-from tests.contvines.studies import PAPER_MACHINE
+from tests.contvines.studies import PAPER_MACHINE, table
 
 STUDY = """{machine}
 [start]
@@ -40,8 +39,7 @@ def test_a_row_is_a_start_of_the_same_orbit(run, tmp_path, numbers, words):
     anywhere = STUDY.format(**numbers, word="LR", periods=1, value=1.0, nodes="")
     (tmp_path / "a.toml").write_text(anywhere.replace("guess = \n", ""))
     run.ok("sweep a.toml -q -o a.csv")
-    with (tmp_path / "a.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = table(tmp_path / "a.csv")
     assert list(rows[0])[:6] == ["value", "direction", "attractor", "word", "periods", "impacts"]
     assert list(rows[0])[-2:] == ["symmetric", "nodes"]
     tried = set()

@@ -49,58 +49,6 @@ def test_turing_points_of_a_brusselator_on_a_line():
     assert len(graph) == 2
 
 
-def test_localised_states_snake():
-    """u' = r u - (1 + d^2/dx^2)^2 u + 1.6 u^2 - u^3 on half a line (Swift and Hohenberg), even about its middle: fold after fold, each to roundoff.
-
-    The folds on either side come to lie at two values, the ends of the pinning region (Burke and Knobloch, Phys. Rev. E 73 (2006) 056211).
-    """
-    n, length = 120, 30.0
-    x = np.linspace(0.0, length, n)
-    inner = sp.identity(n) + second_difference(n, 2.0) / x[1] ** 2
-    operator = -(inner @ inner).tocsc()
-
-    def F(u, r):
-        return r * u + operator @ u + 1.6 * u**2 - u**3
-
-    def jacobian(u, r):
-        return (operator + sp.diags_array(r + 3.2 * u - 3.0 * u**2)).tocsc()
-
-    def fold_near(u, r):
-        """By Newton's method for F = 0, F_u v = 0, v.v = 1; nothing of the package's."""
-        v = splu(jacobian(u, r)).solve(splu(jacobian(u, r)).solve(u))
-        v /= np.linalg.norm(v)
-        for _ in range(8):
-            matrix = jacobian(u, r)
-            bent = sp.diags_array((3.2 - 6.0 * u) * v)
-            whole = [[matrix, None, u[:, None]], [bent, matrix, v[:, None]], [None, v[None, :], None]]
-            missed = np.concatenate([F(u, r), matrix @ v, [0.5 * (v @ v - 1.0)]])
-            step = splu(sp.bmat(whole, format="csc")).solve(-missed)
-            u, v, r = u + step[:n], v + step[n : 2 * n], r + step[-1]
-        return r
-
-    weights = np.full(n, x[1])
-    weights[[0, -1]] *= 0.5
-    problem = cv.AlgebraicProblem(
-        F,
-        1.2 * np.cos(x) / np.cosh(x / 6.0),
-        -0.2,
-        jacobian=jacobian,
-        derivative=lambda u, r: u,
-        outputs={"mass": lambda u, r: float(weights @ u**2)},
-    )
-    graph = cv.diagram(problem, within=(-0.5, -0.05), bounds={"mass": (None, 11.0)}, depth=0)
-    folds = graph.of_kind("fold")
-    assert len(folds) >= 6
-    for point in folds:
-        exact = fold_near(point.u * (1.0 + 1e-5), point.value * (1.0 - 1e-5))
-        assert point.value == pytest.approx(exact, rel=5e-12)
-        assert abs(point.value - exact) <= max(point.location_error, 1e-12)
-    inside = np.array([point.value for point in folds[1:-1]])
-    assert np.ptp(inside) > 0.02
-    for end in (inside[inside < inside.mean()], inside[inside > inside.mean()]):
-        assert np.ptp(end) < 0.01
-
-
 @pytest.mark.parametrize("complex_step", [True, False])
 def test_coloured_differences(complex_step):
     """A chain of 60 without a Jacobian: one call (or six) for each of three colours, and the fold of the dense problem."""

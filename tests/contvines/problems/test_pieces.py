@@ -6,25 +6,25 @@ import pytest
 import contvines as cv
 
 
-def problem(a, b, start=-0.5):
+def problem(a, b):
     def f(x, p, sign):
         return (a if sign["side"] < 0 else b) * x + p
 
-    return cv.MapProblem(
-        f, [start / (1.0 - (a if start < 0.0 else b))], start, switches={"side": lambda x, p: x[0]}, scale=1.0
-    )
+    return cv.MapProblem(f, [-0.5 / (1.0 - a)], -0.5, switches={"side": lambda x, p: x[0]}, scale=1.0)
 
 
-def leading(graph):
-    (point,) = [p for p in graph.special.values() if p.kind == "switch"]
+def followed(a, b):
+    """The diagram, and the notes of the switches at the border."""
+    graph = cv.diagram(problem(a, b), within=(-1.0, 1.0), depth=1)
+    (point,) = graph.of_kind("switch")
     assert point.value == pytest.approx(0.0, abs=1e-9)
-    return [s for s in graph.switches if s.point == point.label]
+    return graph, {s.note for s in graph.switches if s.point == point.label}
 
 
 def test_a_fixed_point_that_goes_on_in_the_next_piece():
     """0 < a, b < 1: x = p / (1 - a) left, p / (1 - b) right."""
-    graph = cv.diagram(problem(0.5, 0.3), within=(-1.0, 1.0), depth=1)
-    assert {s.note for s in leading(graph)} == {"persistence"}
+    graph, notes = followed(0.5, 0.3)
+    assert notes == {"persistence"}
     right = next(b for b in graph.branches.values() if b.points.max() > 0.1)
     np.testing.assert_allclose(right.points[:, 0], right.values / 0.7, atol=1e-10)
     assert right.values.max() == 1.0 and right.stable[1:-1].all()
@@ -33,8 +33,8 @@ def test_a_fixed_point_that_goes_on_in_the_next_piece():
 
 def test_two_fixed_points_that_meet_and_vanish():
     """b > 1: the right one is -p / (b - 1), for p < 0 as well, and unstable."""
-    graph = cv.diagram(problem(0.5, 2.0), within=(-1.0, 1.0), depth=1)
-    assert {s.note for s in leading(graph)} == {"nonsmooth fold"}
+    graph, notes = followed(0.5, 2.0)
+    assert notes == {"nonsmooth fold"}
     right = next(b for b in graph.branches.values() if b.points.max() > 0.1)
     np.testing.assert_allclose(right.points[:, 0], -right.values, atol=1e-10)
     assert right.values.max() == pytest.approx(0.0, abs=1e-9) and right.values.min() == -1.0
@@ -43,8 +43,8 @@ def test_two_fixed_points_that_meet_and_vanish():
 
 def test_a_cycle_of_two_points_that_leaves_the_border():
     """a b = -0.8: beyond the border the right fixed point is unstable, and one point on either side is a stable cycle."""
-    graph = cv.diagram(problem(0.4, -2.0), within=(-1.0, 1.0), depth=1)
-    assert {s.note for s in leading(graph)} == {"persistence", "nonsmooth flip"}
+    graph, notes = followed(0.4, -2.0)
+    assert notes == {"persistence", "nonsmooth flip"}
     pair = next(b for b in graph.branches.values() if b.points.shape[1] == 2)
     p = pair.values[-1]
     low, high = sorted(pair.points[-1])

@@ -1,6 +1,5 @@
 """Surveys: the same rows from one process, from two, and from a cluster that loses a worker; resumed, kept, read, drawn."""
 
-import csv
 import json
 import os
 import signal
@@ -9,6 +8,7 @@ import numpy as np
 import pytest
 
 from contvines.survey import PlanError, load_survey, survey
+from tests.contvines.studies import table
 from tests.contvines.survey.circles import Circles, size
 
 pytestmark = pytest.mark.slow
@@ -92,7 +92,7 @@ def test_files_hold_every_number(one, tmp_path):
     one.save(tmp_path / "s.nc")
     back = load_survey(tmp_path / "s.nc")
     assert same(one, back) and back.units == one.units and back.about == one.about
-    rows = list(csv.DictReader((tmp_path / "s.csv").open()))
+    rows = table(tmp_path / "s.csv")
     assert len(rows) == 10 and float(rows[3]["size [mm]"]) == one["size"][1, 1]
     assert rows[9]["note"].startswith("radius = 4") and rows[9]["size [mm]"] == ""
     data = one.to_xarray()
