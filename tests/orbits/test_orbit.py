@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractors, sweep
-from orbits.theory.manifolds import activation, friction_level, impact_loss, sliding_bounds
+from orbits.theory.manifolds import activation, friction_level, impact_loss, sliding_bounds, turning_point
 from tests.machines import ABSORBER, STRONG
 
 machines = st.builds(
@@ -119,7 +119,7 @@ def test_without_friction_words_need_no_turns():
 def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
     """`tt` leaves open whether it slides to the left first; the turning points are at +-sqrt(C^2 - h^2)."""
     amplitude = np.sqrt(0.3)
-    turning = np.sqrt(0.3 - (0.5 * np.pi * 1.006 * 0.5 * 0.211) ** 2)
+    turning = float(turning_point(amplitude, friction_level(0.5, 0.211, 0.006)))
     phase = 4.403 if way > 0.0 else 4.403 + np.pi
     guess = [[phase, -0.5 * way], [phase + np.pi, 0.5 * way]]
     orbit = ABSORBER.orbit("tt", amplitude=amplitude, guess=guess)
