@@ -32,6 +32,13 @@ def test_all_points_in_many_digits(chart):
         if event == "t":
             assert abs(second) == pytest.approx(1.0, abs=1e-13)
             assert np.abs(found.multipliers + 1.0).min() < 1e-9
+            lines = [chart[label] for label in point.on]
+            own = [line for line in lines if line.problem.base.periods == point.problem.periods]
+            sides = [
+                sum(abs(p - point.value[0]) < 0.03 for line in own for p in line.at(point.value[1] + off))
+                for off in (-0.01, 0.01)
+            ]
+            assert sorted(sides) == [1, 2]  # the doubling is there on one side of the graze only
         else:  # a margin of the flight before the impact; B+ is the cavity's velocity C cos Psi
             assert point.problem.margin_kind(point.margins[0]) == "wall-graze"
             assert second == pytest.approx(point.value[0] * np.cos(phase), abs=1e-7)

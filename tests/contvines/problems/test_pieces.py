@@ -6,16 +6,15 @@ import pytest
 import contvines as cv
 
 
-def problem(a, b):
+def followed(a, b):
+    """The diagram, and the notes of the switches at the border."""
+
     def f(x, p, sign):
         return (a if sign["side"] < 0 else b) * x + p
 
-    return cv.MapProblem(f, [-0.5 / (1.0 - a)], -0.5, switches={"side": lambda x, p: x[0]}, scale=1.0)
-
-
-def followed(a, b):
-    """The diagram, and the notes of the switches at the border."""
-    graph = cv.diagram(problem(a, b), within=(-1.0, 1.0), depth=1)
+    side = {"side": lambda x, p: x[0]}
+    problem = cv.MapProblem(f, [-0.5 / (1.0 - a)], -0.5, switches=side, scale=1.0)
+    graph = cv.diagram(problem, within=(-1.0, 1.0), depth=1)
     (point,) = graph.of_kind("switch")
     assert point.value == pytest.approx(0.0, abs=1e-9)
     return graph, {s.note for s in graph.switches if s.point == point.label}

@@ -60,7 +60,7 @@ def test_friction_holds_up_to_its_acceleration():
 
 @pytest.mark.parametrize("ratio", [0.963, 1.0, 1.04])
 def test_sliding_bounds_by_simulation_at_other_frequencies(ratio):
-    """Just inside the bounds the simulated absorber slides and turns; just below it sticks at each turn, just above it hits."""
+    """Just above the lower bound the simulated absorber slides and turns, just below it sticks at each turn; at the upper one it turns at the walls."""
     design = Design()
     low, high = design.sliding_bounds_at(ratio * design.natural_frequency)
     machine = Absorber(
@@ -70,10 +70,8 @@ def test_sliding_bounds_by_simulation_at_other_frequencies(ratio):
     for displacement, letters in ((0.999 * low, "su"), (1.001 * low, "t")):
         seen = find_attractor(machine, amplitude=displacement * 1.006 / design.cavity)
         assert set(seen.letters) == set(letters)
-    for share, inside in ((0.9999, True), (1.0001, False)):
-        orbit = machine.orbit("tt", amplitude=share * high * 1.006 / design.cavity)
-        widest = np.abs(orbit.sample(2000)["w"]).max()
-        assert widest == pytest.approx(1.0, abs=1e-3) and (widest < 1.0) == inside
+    highest = machine.orbit("tt", amplitude=high * 1.006 / design.cavity)
+    assert np.abs(highest.nodes[:, 1]) == pytest.approx(1.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("stuck", [False, True])
