@@ -6,13 +6,14 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 
 import pytest
 
 import contvines as cv
 from contvines.graph.persistence import same_graph
 from contvines.long_work import HELD, OPEN, listening, wanted
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 
 PROGRAM = """
 import ctypes, signal, sys
@@ -174,16 +175,15 @@ def test_a_handler_of_the_users_own_is_left_alone():
 @pytest.mark.parametrize("where", ["memory", "file"])
 def test_interrupted_at_many_moments_a_diagram_ends_as_the_undisturbed_one(tmp_path, where):
     """Every interrupt ends the run; what was recorded until then is right; the last run has the same graph, bit for bit."""
-    orbit = ABSORBER.symmetric_orbit(amplitude=0.6)
-    options = {"over": "amplitude", "within": (0.17, 1.27), "depth": 2}
-    whole = cv.diagram(orbit, **options)
+    made = partial(absorber_graph, 0.6, (0.17, 1.27), depth=2)
+    whole = made()
     journal = cv.MemoryJournal() if where == "memory" else cv.resume(tmp_path / "x.vines")
     rounds = 0
     for delay in (0.01, 0.03, 0.05, 0.07, 0.09, 0.11, 0.13, 0.15):
         timer = threading.Timer(delay, signal.raise_signal, [signal.SIGINT])
         try:
             timer.start()  # on a loaded machine the interrupt may come in here
-            cv.diagram(orbit, journal=journal, **options)
+            made(journal=journal)
             timer.join()
             time.sleep(0.01)  # too late for this run: it comes here
         except KeyboardInterrupt:
@@ -191,7 +191,7 @@ def test_interrupted_at_many_moments_a_diagram_ends_as_the_undisturbed_one(tmp_p
         else:
             break
     assert rounds >= 3
-    assert same_graph(cv.diagram(orbit, journal=journal, **options), whole)
+    assert same_graph(made(journal=journal), whole)
 
 
 def test_an_interrupt_inside_a_write_leaves_no_transaction_open(tmp_path):

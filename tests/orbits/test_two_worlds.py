@@ -14,7 +14,7 @@ from orbits import Absorber
 from orbits.attractors import find_attractor
 from orbits.simulation import replay, simulate
 from orbits.starts.find import polish
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 LARGE = bool(os.environ.get("CONTVINES_LARGE"))
 BLOCKS = 60 if LARGE else 6  # of ten machines: some 70 in 100 have a periodic attractor that makes events
@@ -147,8 +147,7 @@ def test_the_tests_would_notice():
     """Unstable orbits are left, and so is an orbit of the bare maps that no machine follows."""
     unstable = ABSORBER.symmetric_orbit(amplitude=np.sqrt(0.6))
     assert unstable.real and not unstable.stable and not comes_back(unstable)
-    start = ABSORBER.symmetric_orbit(amplitude=0.7)
-    graph = cv.diagram(start, over="amplitude", within=(0.6, 0.92), depth=1, virtual=True)
+    graph = absorber_graph(0.7, (0.6, 0.92), depth=1, virtual=True)
     ghosts = [b for b in graph if not b.real and b.description["word"] == "LR" and b.stable.any()]
     assert ghosts
     for branch in ghosts:

@@ -9,7 +9,7 @@ import pytest
 import contvines as cv
 from contvines.report.contents import contents
 from tests.contvines.studies import EXAMPLES
-from tests.machines import ABSORBER
+from tests.machines import absorber_graph
 
 pytestmark = pytest.mark.slow
 
@@ -17,8 +17,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     path = tmp_path_factory.mktemp("prove") / "a.vines"
-    orbit = ABSORBER.symmetric_orbit(amplitude=0.6)
-    cv.diagram(orbit, over="amplitude", within=(0.4, 0.75), depth=0).save(path)
+    absorber_graph(0.6, (0.4, 0.75), depth=0).save(path)
     return path
 
 

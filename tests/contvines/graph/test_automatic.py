@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tests.machines import ABSORBER
+from tests.machines import ABSORBER, absorber_graph
 
 DOUBLINGS = [3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228]
 
@@ -109,8 +109,8 @@ def test_a_repeated_start_gives_the_graph_of_its_root(word, periods, times):
 
 @pytest.mark.parametrize("upper", [1e4, 1e6])
 def test_the_graph_does_not_depend_on_how_wide_an_interval_is_asked_for(upper):
-    seed, edge = ABSORBER.symmetric_orbit(amplitude=0.55), 1.3
-    narrow, wide = (cv.diagram(seed, over="amplitude", within=(0.2, end), depth=1) for end in (edge, upper))
+    edge = 1.3
+    narrow, wide = (absorber_graph(0.55, (0.2, end), depth=1) for end in (edge, upper))
 
     def points(graph):
         below = (p for p in graph.special.values() if p.value < edge and p.kind != "end")
