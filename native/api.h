@@ -14,7 +14,7 @@
 //   Functions are declared EXPORT and called through ctypes (`contvines.core.library`). Arguments are numbers (`double`, `whole`
 //   = int64) and pointers; arrays are C-contiguous, of doubles or of `whole`, and their sizes are passed as well. Longer lists of
 //   arguments are plain structs whose members are all eight bytes long (double, whole, pointer). Python fills such a struct from a
-//   NamedTuple whose fields have the same names in the same order (`contvines.core.records`): arrays become pointers, integers
+//   NamedTuple whose fields have the same names in the same order (`contvines.core.table`): arrays become pointers, integers
 //   `whole`, floats double. A struct and the arrays it points to are owned by Python; native code keeps neither.
 //   Functions return a status or a number; they never fail otherwise. NaN and infinity in, NaN and infinity out.
 //

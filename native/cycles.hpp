@@ -49,7 +49,7 @@ inline void unpin(const Cycle& c, Workspace& work) {
     for (whole k = 0; k < n; k++) work.A[row * n + k] = work.pin[k], work.D[row * n + k] = work.pin[n + k];
 }
 
-// The numbers at p, then their derivatives with respect to p, into `out` (2 P,); see orbits/machines/path.py.
+// The numbers at p, then their derivatives with respect to p, into `out` (2 P,); see orbits/machines/parameters.py.
 inline void place(const Cycle& c, double p, double* out) {
     const whole count = c.parameters;
     for (whole j = 0; j < count; j++) {
