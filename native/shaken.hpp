@@ -93,18 +93,21 @@ struct Shaken {
         else state[MODE] = to_left ? 1.0 : -1.0;
     }
 
+    // Whether the push in a direction passes zero at psi, rising.
+    bool begins_at_root(double psi, double s) const {
+        const Direction& ahead = s > 0.0 ? leftwards : rightwards;
+        const double C = law.amplitude;
+        double sin_psi, cos_psi;
+        sine_cosine(psi, sin_psi, cos_psi);
+        return ahead.driven && -s * cos_psi > 0.0 && fabs(-s * C * sin_psi - ahead.pull) < 1e-13 * C;
+    }
+
     Status advance(double *state, double until, Events& events) const {
         const double C = law.amplitude, omega = law.omega, size = C + fabs(law.slope) / (omega * omega);
         double psi = state[PSI], w = state[W], p = fabs(state[RATE]) / omega, s = state[MODE], turns = state[TURNS], low = state[LOW];
         if (!(isfinite(psi) && isfinite(w) && isfinite(p) && isfinite(size) && isfinite(leftwards.pull))) return FAILED;
         const double goal = least(until, turns + SLICE);
-        bool at_root = false;  // the leg starts exactly where q = 0, q rising
-        if (s != 0.0 && p == 0.0) {
-            const Direction& ahead = s > 0.0 ? leftwards : rightwards;
-            double sin_psi, cos_psi;
-            sine_cosine(psi, sin_psi, cos_psi);
-            if (ahead.driven && -s * cos_psi > 0.0) at_root = fabs(-s * C * sin_psi - ahead.pull) < 1e-13 * C;  // a slip
-        }
+        bool at_root = s != 0.0 && p == 0.0 && begins_at_root(psi, s);  // the leg starts exactly where q = 0, q rising: a slip
         Status status = EVENTS_FULL;
         while (!events.full()) {
             const double left = (goal - turns) * TWO_PI - psi;
@@ -261,7 +264,11 @@ struct Shaken {
                 continue;
             }
             p = 0.0;
-            if (frictionless) { s = -s; continue; }  // nothing happens where w' passes zero
+            if (frictionless) {  // nothing happens where w' passes zero
+                s = -s;
+                at_root = x == 0.0 && begins_at_root(psi, s);  // else both directions may halt there by rounding, for ever
+                continue;
+            }
             bool turns_back = behind.driven && C * (s * sine(psi)) > behind.pull;
             s = turns_back ? -s : 0.0;
             events.add(ROW, turns_back ? TURN : STICK, s, psi, turns, w, 0.0, 0.0);

@@ -66,6 +66,8 @@ HARD = [
     (SMOOTH, {}, 1.0),  # at rest at the very instant at which nothing pushes
     (SMOOTH, {"w": -1.0}, 1.0),  # ... and at the wall against which it is pushed next
     (SMOOTH.changed(restitution=0.3), {"phase": np.pi, "w": -1.0}, 0.2),
+    (SMOOTH.changed(restitution=0.3), {"phase": np.pi}, 0.2),
+    (Cavity(restitution=0.5, friction=0.0, gravity=0.1, slope=6e-267), {"phase": np.pi}, 0.2),  # ... pushed by less than rounding
     (SMOOTH, {"w_rate": 0.5}, 0.0),  # free drift
     (Cavity(restitution=0.6, friction=0.1, gravity=2.0, slope=0.6), {"w": 0.2}, 0.5),  # slides down
     (Coupled(restitution=0.3, friction=0.2, gravity=0.2, mass_ratio=0.3, damping=0.3, forcing=3.0, frequency=0.9), {"w": 1.0, "w_rate": -1e-8, "v": 2.0}, None),  # impacts pile up
