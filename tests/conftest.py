@@ -4,6 +4,7 @@ import os
 from contextlib import suppress
 
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 
 from contvines.core.build import NotBuilt, build, up_to_date
 from contvines.survey import pools
@@ -18,6 +19,8 @@ settings.register_profile(
 settings.register_profile("repeatable", settings.get_profile("patient"), derandomize=True)
 settings.register_profile("search", settings.get_profile("patient"), derandomize=False)
 settings.load_profile("repeatable")
+# else numbers in source files are drawn more often, and the examples depend on the modules that a worker has imported so far
+providers.is_local_module_file = lambda path: False  # pyright: ignore[reportPrivateImportUsage]
 
 if "PYTEST_XDIST_WORKER" in os.environ:
     pools.cores = lambda: 1  # every core has tests of its own; those of several processes say how many

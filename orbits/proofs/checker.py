@@ -1,6 +1,6 @@
-"""Check certificates of proofs independently: only the certificate and mpmath's intervals are used, no code of the prover.
-Each is a chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, parameter) are m + s q + [-r, r], one
-solution for every |q| <= h; r = 0 for an unknown that q alone fixes, h = 0 for an orbit, which lies in the tiles next to it."""
+"""Check certificates of proofs with nothing but the certificate and mpmath's intervals, without code of the prover.
+A chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, parameter) are m + s q + [-r, r], one
+solution for every |q| <= h; r = 0 if q alone fixes an unknown, h = 0 for an orbit, which lies in the tiles next to it."""
 import re
 from typing import Any
 
@@ -37,7 +37,7 @@ def cos(x): return x.of(iv.cos(x[0]), -iv.sin(x[0]))
 def exp(x): return x.of(iv.exp(x[0]), iv.exp(x[0]))
 def sign(x): return True if x.a > 0 else False if x.b < 0 else None
 def machine(c, parameter):
-    """The machine's numbers, constants times powers of the parameter: friction limit by mode, walls and restitution by side."""
+    """Numbers, constants times powers of the parameter: friction limit by mode, walls and restitution by side."""
     p = {name: (parameter ** number(k) if k != "0" else jet(1)) * (number(a) + BOTH * number(r))
          for name, (a, r, k) in c["parameters"].items()}
     weight, tilt = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", jet(0))
@@ -47,7 +47,7 @@ def machine(c, parameter):
         p |= {f"limit{s}": weight * cos(tilt) * friction, f"bounce{s}": r, f"wall{s}": p.get("distance" + side, jet(1)) * s}
     return p | {"whole": p["e"] + 1}
 def motion(p, letter, mode, x, phase, rates=5):
-    """q1 = X sin + Y cos + rest + (y cos bt + z sin bt) exp(-dt), w = q1 - q2, v = q1 + e q2, with derivatives; q2'' is constant."""
+    """q1 = X sin + Y cos + rest + (y cos bt + z sin bt) exp(-dt), w = q1 - q2, v = q1 + e q2, with rates; q2'' const."""
     e, om, whole, wall, s, c, zero = p["e"], p["frequency"], p["whole"], WALL.get(letter), sin(x[0]), cos(x[0]), jet(0)
     t, pull, mass = (phase - x[0]) / om, (p[f"limit{mode}"] * mode - p["bias"]) * abs(mode) / whole, jet(1) if mode else whole
     X, Y, y, z, C, S, d, b = p.get("amplitude"), *[zero] * 7
@@ -67,7 +67,7 @@ def motion(p, letter, mode, x, phase, rates=5):
         X, Y, y, z, rest = om * Y * -1, om * X, b * z - d * y, b * y * -1 - d * z, zero
     return q, [a - f for a, f in zip(q, [*fall, zero, zero])] if mode else [w0, *[zero] * 4]
 def flights(c, p, x, end):
-    """For every flight: letter, mode, event at its end, mode after it, both nodes; the last one ends at `end` or its image."""
+    """For every flight: letter, mode, event at its end, mode after it, both nodes; the last ends at `end` or its image."""
     nodes, t, w = [x[j:j + c["n"]] for j in range(0, len(x) - 1, c["n"])], 1 - 2 * c["half"], p["wall1"] + p["wall-1"]
     end = [end[0] + iv.pi * c["periods"] * (2 - c["half"]), end[1] * t + w * c["off"], *(a * t for a in end[2:c["n"]])]
     return [(*word, node, y) for word, node, y in zip(c["word"], nodes, [*nodes[1:], end])]
@@ -139,7 +139,7 @@ def solved(M, B):  # Cramer's rule: no pivots, so nothing is compared
     n, by = range(len(M)), 1 / det(M)
     return iv.matrix([[det([[*row[:i], b[j], *row[i + 1:]] for row, b in zip(M, B)]) * by for j in n] for i in n])
 def spectrum(c, hull, basis) -> Any:
-    """det(1 - A), det(1 + A) of the map A over the word; how many multipliers lie outside the circle, or None if not proved."""
+    """det(1 - A), det(1 + A) of the map A over the word; how many multipliers lie outside the circle (None: not proved)."""
     n, p, rows, loose = c["n"], machine(c, jet(hull[-1])), equations(c, hull, 10**6), not {*c["events"]} & {*WALL}
     if c["events"] == "o": return iv.mpf(1), iv.mpf(1), 0 if n == 2 or (p["e"] * p["damping"])[0].a > 0 else None
     basis = [[number(text) for text in row] for row in basis]
