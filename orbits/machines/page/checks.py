@@ -26,18 +26,28 @@ DRAWS = 8  # random states at which formulas are compared
 
 
 class Draws:
-    """Random states, phases and signs, together with the machine's own parameters."""
+    """Random states, phases and signs, together with parameters."""
 
-    def __init__(self, equations: Equations, params: np.ndarray, spread: bool = False) -> None:
+    def __init__(self, equations: Equations, params: np.ndarray) -> None:
         generator = np.random.default_rng(14)
         self.equations = equations
         self.states = generator.uniform(-1.0, 1.0, (DRAWS, len(equations.states)))
         self.clock = generator.uniform(0.0, 2.0 * np.pi, DRAWS)
         self.signs = generator.choice([-1.0, 1.0], (DRAWS, len(equations.signed)))
-        if spread:
-            parts = generator.uniform(0.1, 0.5, len(params))
-            params = np.where(params == 0.0, parts, (1.0 + parts) * params)
         self.params = np.tile(params, (DRAWS, 1))
+
+    @classmethod
+    def elsewhere(cls, equations: Equations, params: np.ndarray) -> Draws:
+        """Draws at parameters near the given ones, none of which is zero; at the given ones if a formula has no value there.
+
+        A relation between contacts must hold at all parameters: a wall whose amplitude is zero by default moves at others.
+        """
+        e = equations
+        parts = np.random.default_rng(15).uniform(0.1, 0.5, len(params))
+        draws = cls(e, np.where(params == 0.0, parts, (1.0 + parts) * params))
+        formulas = [*e.velocity.values(), *e.surface.values()]
+        formulas += [value for j in e.gap for value in (e.gap_rate(j), *e.impact(j))]
+        return draws if np.isfinite(draws.of(formulas)).all() else cls(e, params)
 
     def of(
         self,
@@ -56,10 +66,10 @@ class Draws:
 
 def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, int], int | None]:
     """Check walls, frictions and switches against the motion; return the effect of impacts on signs (`Alphabet.flips`)."""
-    e, draws, others = equations, Draws(equations, params), Draws(equations, params, spread=True)
+    e, draws, others = equations, Draws(equations, params), Draws.elsewhere(equations, params)
     flips: dict[tuple[int, int], int | None] = {}
     _check_periods(draws)
-    _check_surfaces(others, draws)
+    _check_surfaces(others)
     for j, force in e.force.items():
         what = e.contacts[j].described
         limit = draws.of([e.limit[j]])[:, 0]
@@ -107,7 +117,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
         ):
             raise PageError(f"{what}: the rate of its gap must be linear in what push changes")
         for k in e.signed:
-            flip = _flip(others, draws, j, e.velocity[k] if k in e.velocity else e.surface[k])
+            flip = _flip(others, j, e.velocity[k] if k in e.velocity else e.surface[k])
             if flip != 0:
                 flips[j, k] = flip
     return flips
@@ -133,7 +143,7 @@ def _check_periods(draws: Draws) -> None:
             )
 
 
-def _check_surfaces(others: Draws, draws: Draws) -> None:
+def _check_surfaces(draws: Draws) -> None:
     """Check that switches affect the motion, and that no two contacts always act together."""
     e = draws.equations
     for j, surface in e.surface.items():
@@ -150,7 +160,7 @@ def _check_surfaces(others: Draws, draws: Draws) -> None:
     pairs = [*e.velocity.items(), *e.surface.items()]
     for place, (j, one) in enumerate(pairs):
         for k, other in pairs[place + 1 :]:
-            if j not in e.velocity or not _proportional(others, draws, one, other):
+            if j not in e.velocity or not _proportional(draws, one, other):
                 continue
             both = f"{e.contacts[j].described} and {e.contacts[k].described}"
             if k in e.velocity:
@@ -163,10 +173,9 @@ def _check_surfaces(others: Draws, draws: Draws) -> None:
             )
 
 
-def _proportional(others: Draws, draws: Draws, one: Symbol, other: Symbol) -> bool:
+def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
     """Return whether two quantities differ only by a constant factor."""
-    table = others.of([one, other])
-    table = table if np.isfinite(table).all() else draws.of([one, other])
+    table = draws.of([one, other])
     with np.errstate(all="ignore"):
         ratio = table[:, 0] / table[:, 1]
     return bool(
@@ -176,26 +185,23 @@ def _proportional(others: Draws, draws: Draws, one: Symbol, other: Symbol) -> bo
 
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
     """Return the switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
-    e, draws, others = equations, Draws(equations, params), Draws(equations, params, spread=True)
+    e, draws = equations, Draws.elsewhere(equations, params)
     found = set()
     for j, surface in e.surface.items():
         rate = e.along(surface, e.rates)
         if e.without_forces.keys() & variables_of(rate):
             continue
         for k, velocity in e.velocity.items():
-            if _proportional(others, draws, rate, velocity):
+            if _proportional(draws, rate, velocity):
                 found.add((j, k))
     return frozenset(found)
 
 
-def _flip(others: Draws, draws: Draws, wall: int, value: Symbol) -> int | None:
+def _flip(draws: Draws, wall: int, value: Symbol) -> int | None:
     """Return 0 if the impact does not change the velocity (or surface); -1 or +1, its sign afterwards; None if both signs are possible."""
-    e, before, rate, after = draws.equations, np.zeros(0), np.zeros(0), np.zeros(0)
-    for one in (others, draws):
-        table = one.of([value, e.gap_rate(wall), *e.impact(wall)])
-        before, rate, after = table[:, 0], table[:, 1], one.of([value], states=table[:, 2:])[:, 0]
-        if np.isfinite(table).all() and np.isfinite(after).all():
-            break
+    e = draws.equations
+    table = draws.of([value, e.gap_rate(wall), *e.impact(wall)])
+    before, rate, after = table[:, 0], table[:, 1], draws.of([value], states=table[:, 2:])[:, 0]
     if np.abs(after - before).max() < FORMULAS.same * (1.0 + np.abs(before).max()):
         return 0
     with np.errstate(all="ignore"):
