@@ -1,4 +1,4 @@
-"""Pictures of branches, orbits, multipliers and the graph; matplotlib is imported only when one is drawn."""
+"""Pictures of graphs, charts, atlases, basins, circles, surveys and orbits; matplotlib is imported when the first one is drawn."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""An atlas: the diagram with all its components, and beneath it the shares of the attractors."""
+"""Picture of an atlas: the diagram with all its components, and below it the shares of the attractors."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from .diagram import draw_diagram
 from .legends import NARROW, place_legend
 from .style import HATCHES, axis_label
 
-MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one
-LOW = 3.4  # inches
+MOST, FEW = 8, 5  # largest number of attractors with a colour of their own: usually, and in a low figure
+LOW = 3.4  # inches: a lower figure has less text
 
 
 @hinting
@@ -36,23 +36,23 @@ def plot_atlas(
     style: Style = None,
     **options: Unpack[CurveOptions],
 ) -> Figure:
-    """Draw the diagram and, beneath it, which share of the starts reaches which motion, stacked against the parameter.
+    """Draw the diagram and, below it, the share of the starts that reaches each attractor, stacked, over the parameter.
 
     Parameters
     ----------
     graph : Graph
-        With ``attractors``.
+        An atlas: a graph with ``attractors``.
     x, y, options
-        As for :func:`contvines.plots.diagram.plot_diagram`; x is the parameter of the shares, too.
+        As for :func:`contvines.plots.diagram.plot_diagram`; the shares are always drawn over the parameter.
     axes : two Axes, optional
-        Drawn on, the diagram on the first.
+        Axes for the diagram and for the shares. Default: a new figure.
     legend, figsize, style
-        As for :func:`contvines.plots.diagram.plot_diagram`; a small figure has no key of the diagram.
+        As for :func:`contvines.plots.diagram.plot_diagram`; a low figure has no legend of the diagram.
 
     Raises
     ------
     ValueError
-        If the graph has no attractors, or `axes` are not two.
+        If the graph has no attractors, or the number of `axes` is not two.
     """
     if not graph.attractors:
         raise ValueError("the graph has no attractors: contvines atlas makes one with, from a study")
@@ -70,11 +70,11 @@ def plot_atlas(
         lower.set_xlabel(axis_label(graph.parameter, unit=unit, notation=graph.notation))
         if small:
             lower.set_ylabel("share")
-        # a high figure has both keys; they stand below one another where there is no room beside the panels
+        # a high figure has both legends: one below the other if the panels leave no room beside them
         if own and not small and (narrower(lower, NARROW) or legend == "below"):
             place_legend(lower, picture.handles(), legend, own, remarks=picture.remarks)
         else:
-            place_legend(lower, (), legend, own, usual="beside")  # first: it narrows both panels
+            place_legend(lower, (), legend, own, usual="beside")  # first: narrows both panels
             if not small:
                 place_legend(upper, picture.handles(), legend, own, remarks=picture.remarks)
         if own:
@@ -85,9 +85,9 @@ def plot_atlas(
 
 
 def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
-    """Bars over the values of the parameter, stacked: the shares of the motions, the `most` largest with a colour each.
+    """Draw the shares of the attractors as stacked bars over the parameter; the `most` largest attractors have a colour each.
 
-    Neighbouring values with few starts are one bar, so that each stands for as many starts as were simulated anywhere.
+    Neighbouring values with few starts share a bar, so that each bar stands for about as many starts as the value with the most starts.
     """
     met = [a for a in graph.attractors if a.starts] or graph.attractors
     values = np.array(sorted({a.value for a in met}))
@@ -96,7 +96,7 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     group = ((np.cumsum(starts) - starts) // starts.max()).astype(int)
     group = np.unique(group, return_inverse=True)[1]
     if group[-1] and starts[group == group[-1]].sum() < 0.5 * starts.max():
-        group[group == group[-1]] -= 1  # too few for a bar of their own
+        group[group == group[-1]] -= 1  # too few starts for a bar of their own
     last = np.flatnonzero(np.diff(group))
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
     weights = starts / np.bincount(group, weights=starts)[group]
@@ -104,7 +104,7 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     many = {key[1:] for key, count in at_once.items() if count > 1}
 
     def key_of(about: Attractor) -> tuple[str, int, str]:
-        """Its name and period; where motions that coexist have both, its branch, too."""
+        """Return name and period of an attractor, and its branch if coexisting attractors share name and period."""
         own = about.name, about.periods
         return *own, (about.branch or "") if own in many else ""
 
@@ -112,7 +112,7 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     for about in met:
         total[key_of(about)] += about.share
     shown = sorted(total, key=lambda key: -total[key])[:most]
-    order: list[tuple[str, int, str] | None] = [*(key for key in total if key in shown), None]  # and others
+    order: list[tuple[str, int, str] | None] = [*(key for key in total if key in shown), None]  # None: others
     heights = {key: np.zeros(len(edges) - 1) for key in order}
     for about in met:
         key, i = key_of(about), int(np.searchsorted(values, about.value))

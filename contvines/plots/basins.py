@@ -1,4 +1,4 @@
-"""Basins of attraction as a coloured plane of starts."""
+"""Picture of basins of attraction: a plane of starts, coloured by attractor."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ..shared.numbers import figures
 from .legends import place_legend
 from .style import axis_label
 
-# the first ones differ in lightness, too
+# the first colours also differ in lightness
 COLORS = ("#1f5c87", "#efb04e", "#5f2570", "#58a868", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
 COLORS += ("#b8b042", "#5b6fd6", "#4d4d4d", "#8fcf8a")
-NAMED = 3  # words of manifolds in the legend
-IMAGE = 0.45  # how much lighter the basin of a mirror image is
+NAMED = 3  # largest number of manifolds named in the legend
+IMAGE = 0.45  # part of the way from a basin's colour to white for the basin of its mirror image
 
 
 @hinting
@@ -33,7 +33,7 @@ def plot_basins(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw which motion each start reaches; mirror images have the same colour, lighter.
+    """Draw the plane of starts, each in the colour of its attractor; the mirror image of an attractor has a lighter colour.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def plot_basins(
     """
     count = len(basins.attractors)
     base = np.array([to_rgb(COLORS[k % len(COLORS)]) for k in range(max(count, 1))])
-    base[[k for k, one in enumerate(basins.attractors) if one.kind == "impossible"]] = 0.9  # no start at all
+    base[[k for k, one in enumerate(basins.attractors) if one.kind == "impossible"]] = 0.9  # in a wall: grey
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
     with drawing(axes, style, figsize) as (figure, axes, own):

@@ -1,4 +1,4 @@
-"""A chart: loci by kind, borders hatched where the motion ends, regions tinted and named, points of codimension two."""
+"""Picture of a chart: loci coloured by kind, borders with strokes on their virtual side, regions with their stable motions, points of codimension two."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from .style import BORDERS, HATCHES, LOCI, axis_label, mark_of_locus
 
 HATCHED = "#d9d9d9"
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
-STROKE = 4.5  # points from one stroke at a border to the next
-CROSSED = 8  # cells of curves that a name may cover
-FITS = 0.88  # share of the height and width of a name that must lie within its region
-WIDTH = 14  # characters in a line of the name of a modulation
-LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
+STROKE = 4.5  # points: distance of the strokes along a border
+CROSSED = 8  # largest weight of curves under a name of a region (see `Ground`)
+FITS = 0.88  # part of the width and height of a name that must lie within its region
+WIDTH = 14  # characters per line of the name of a modulation
+LEAST_SHARE = 0.012  # part of the plane: smaller regions have no name
 
 
 @hinting
@@ -41,17 +41,17 @@ def plot_chart(
     style: Style = None,
     figsize: Size = None,
 ) -> Figure:
-    """Draw a chart.
+    """Draw a chart: loci solid where they are real and dotted where they are virtual, with the stable motions of each region.
 
     Parameters
     ----------
     chart : Chart
     labels : bool
-        Write the labels of the points of codimension two.
+        Label the points of codimension two.
     names : bool
-        Write into each region what is stable there.
+        Write the stable motions into each region.
     axes, legend, style, figsize
-        As for :func:`contvines.plots.diagram.plot_diagram`; the legend is usually below a new figure, inside given axes.
+        As for :func:`contvines.plots.diagram.plot_diagram`; by default the legend is below a new figure, and inside given axes.
     """
     own = axes is None
     with drawing(axes, style, figsize) as (figure, axes, _):
@@ -83,7 +83,7 @@ def plot_chart(
 
 
 def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
-    """Where it is real solid with a few marks, with strokes on the side of a border where its motion cannot be, else dotted."""
+    """Draw a locus: solid with a few marks where it is real, else dotted; strokes show the side of a border on which the motion is virtual."""
     values, real = locus.values, locus.real
     solid, dotted = values.copy(), values.copy()
     both = real[:-1] & real[1:]
@@ -93,11 +93,11 @@ def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
     color = (LOCI | BORDERS).get(locus.kind, "#6b6b6b")
     look: dict[str, Any] = {"color": color, "label": mark.name, "zorder": 3}
     (line,) = axes.plot(*dotted.T, linestyle=":", linewidth=1.0, **look)
-    if np.isfinite(solid).any():  # of a locus that is virtual all along nothing is
+    if np.isfinite(solid).any():  # marks cannot be spaced on a line without finite points
         look |= {"linewidth": float(rcParams["lines.linewidth"]) * (0.65 if border else 0.95)}
         look |= {"marker": mark.marker, "markersize": 4.0, "markeredgewidth": 0.8}
         look["markerfacecolor"] = color if mark.filled else "white"
-        # a few on each locus, in parts of the axes' diagonal, for those who see no colours
+        # first mark and distance of marks, relative to the axes' diagonal: kinds differ without colours
         (line,) = axes.plot(*solid.T, markevery=(0.07, 0.23), **look)
     if border and locus.seed is not None and locus.beyond:
         stroke = TickedStroke(spacing=STROKE, angle=-90 * locus.beyond, length=0.65, linewidth=0.6)
@@ -106,7 +106,7 @@ def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
 
 
 def _tint(axes: Axes, chart: Chart) -> None:
-    """Tint and hatch the regions, those alike in which the same is stable: distinguished without colours, too."""
+    """Tint and hatch the regions; regions with the same stable motions look alike."""
     seen: dict[tuple[str, ...], int] = {}
     for region in chart.regions:
         place = seen.setdefault(tuple(sorted(region.words)), len(seen))
@@ -125,7 +125,7 @@ def _tint(axes: Axes, chart: Chart) -> None:
 
 
 def _name(axes: Axes, chart: Chart) -> None:
-    """Write into regions what is stable there, in the middle or as near to it as the text lies within its region and on nothing else."""
+    """Write the stable motions into each region, as near to its middle as the text fits into the region and covers no label."""
     low, high = np.array(chart.within).T
     for region in chart.regions:
         if region.share < LEAST_SHARE or not region.words:
@@ -138,7 +138,7 @@ def _name(axes: Axes, chart: Chart) -> None:
             share = (axes.transData.inverted().transform(corners) - low) / (high - low)
             i, j = np.clip(share * region.cells.shape, 0, np.array(region.cells.shape) - 1).astype(int).T
             inside = region.cells[i, j].reshape(ground.raster.shape)
-        for count in (4, 2, 1):  # fewer words where there is little room
+        for count in (4, 2, 1):  # largest number of motions
             names = [_lines(word) for word in region.words[:count]]
             more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
             more += ["(in part)"] if region.others else []

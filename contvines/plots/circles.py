@@ -1,4 +1,4 @@
-"""Invariant circles: the section, and radius and rotation number against the parameter."""
+"""Picture of invariant circles: the section, and radius and rotation number over the parameter."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .style import BLUE, axis_label
 
 
 def _roundest(circles: Circles) -> tuple[str, ...]:
-    """The two coordinates between which the first harmonic of the last circle encloses most, relative to its extent."""
+    """Return the two coordinates in whose plane the first harmonic of the last circle encloses the largest area, relative to the extent of the circle."""
     if not len(circles):
         return circles.names[:2]
     x = circles[-1].points - circles[-1].points.mean(axis=0)
@@ -37,21 +37,21 @@ def plot_circles(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw the circles beside a Neimark-Sacker point.
+    """Draw the circles that leave a Neimark-Sacker point.
 
     Parameters
     ----------
     circles : Circles
     coordinates : (str, str), optional
-        Which coordinates of the section are drawn across and upright; by default those in which the circles look most like circles.
+        Coordinates of the section on the x and y axes; by default those in which the circles are roundest.
     axes, legend, figsize, style
-        As for :func:`contvines.plots.diagram.plot_diagram`; one has the section, three have section, radius and turns, and a
-        small new figure has the section alone.
+        As for :func:`contvines.plots.diagram.plot_diagram`; one of them for the section, or three for section, radius and
+        rotation number. A small new figure has the section only.
 
     Raises
     ------
     ValueError
-        If the section has no such coordinate, or fewer than two of them, or if there are two axes.
+        If a coordinate is unknown, the number of coordinates is not two, or the number of axes is neither one nor three.
     """
     names = circles.names
     wanted = _roundest(circles) if coordinates is None else coordinates
@@ -78,7 +78,7 @@ def plot_circles(
 
 
 def _section(axes: Axes, circles: Circles, pair: tuple[int, int], colors: np.ndarray) -> None:
-    """The circles once per period, later ones lighter; repelling ones dashed."""
+    """Draw the circles on the section, larger ones lighter, repelling ones dashed."""
     phases = np.linspace(0.0, 2.0 * np.pi, 361)
     for circle, color in zip(circles.circles, colors):
         x = circle.at(phases)[:, pair]
@@ -91,13 +91,13 @@ def _section(axes: Axes, circles: Circles, pair: tuple[int, int], colors: np.nda
 
 
 def _sizes(radius: Axes, rotation: Axes, circles: Circles, colors: np.ndarray) -> None:
-    """Radius, with what the normal form says, and turns per period against the parameter."""
+    """Draw the radius, with that of the normal form, and the turns per period over the parameter."""
     values = np.append(circles.value, circles.values)
     predicted = np.append(0.0, [circle.predicted for circle in circles.circles])
     look = {"marker": ".", "markersize": 4}
     radius.plot(values, np.append(0.0, circles.radius), color=BLUE, label="circle", **look)
     for value, size, color in zip(circles.values, circles.radius, colors):
-        radius.plot([value], [size], "o", color=color, markersize=4.5, zorder=4)  # the key to the section
+        radius.plot([value], [size], "o", color=color, markersize=4.5, zorder=4)  # colours of the section
     radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
     radius.set_ylabel("radius")
     rotation.plot(values, np.append(circles.rotation, circles.rotations), color="#7c3aed", **look)

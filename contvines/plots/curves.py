@@ -1,4 +1,4 @@
-"""Branches as curves on the page: broken where an angle wraps, refined where the eye would see corners."""
+"""Branches as curves of a picture: broken where an angle jumps by a turn, refined where corners would be visible."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from matplotlib.lines import Line2D
 
 from ..branches import Branch
 
-CORNER = 0.06  # radians: a turn between neighbouring segments on the page that the eye sees
-SHORT = 4.0  # pixels: a segment this short needs no refinement
-MOST = 40  # points put between two neighbours, at most
+CORNER = 0.06  # radians: angle between neighbouring segments on the page from which on a corner is visible
+SHORT = 4.0  # pixels: shorter segments are not refined
+MOST = 40  # largest number of points inserted between two neighbours
 
 
 class Curve:
-    """A run of points of one branch, its inclusive indices `first` to `last`, as lines of a picture with the measures x and y."""
+    """The points `first` to `last` (inclusive) of a branch, drawn as measure y over measure x: one line, or one per point of a cycle of a map."""
 
     def __init__(self, branch: Branch, x: str, y: str, first: int, last: int) -> None:
         self.branch, self.x, self.y = branch, x, y
@@ -30,11 +30,11 @@ class Curve:
         )
 
     def draw(self, axes: Axes, style: Mapping[str, Any]) -> None:
-        """Draw through the stored points, a line per point of a cycle; `style` as matplotlib's lines know it."""
+        """Draw lines through the stored points; `style`: arguments of `Axes.plot`."""
         self.lines = [axes.plot(*broken(xs, ys, self.turning), **style)[0] for xs, ys in self._stored]
 
     def refine(self, axes: Axes) -> None:
-        """Put points between the stored ones where the drawn line has corners, for the limits that the axes have now."""
+        """Insert points between the stored ones where the line has visible corners, for the present limits of the axes."""
         strands = self._stored
         if len(strands[0][0]) < 3 or not self.lines:
             return
@@ -49,7 +49,7 @@ class Curve:
             drawn = []
             for (xs, ys), found in zip(strands, new, strict=True):
                 nx, ny = (np.array(part) for part in found)
-                nx[~inside], ny[~inside] = xs, ys  # stored points stay what they are
+                nx[~inside], ny[~inside] = xs, ys  # stored points keep their values
                 good = np.isfinite(nx) & np.isfinite(ny) | ~inside
                 drawn.append((nx[good], ny[good]))
         for line, (xs, ys) in zip(self.lines, drawn, strict=True):
@@ -57,7 +57,7 @@ class Curve:
 
 
 def broken(xs: np.ndarray, ys: np.ndarray, turning: tuple[bool, bool]) -> tuple[np.ndarray, np.ndarray]:
-    """A curve with a gap (nan) wherever an angle jumps by more than half a turn between neighbouring points."""
+    """Return a curve with a gap (nan) wherever an angle jumps by more than half a turn between neighbouring points."""
     jumps = np.zeros(max(len(xs) - 1, 0), dtype=bool)
     for values, angle in zip((xs, ys), turning):
         if angle:
@@ -69,16 +69,17 @@ def broken(xs: np.ndarray, ys: np.ndarray, turning: tuple[bool, bool]) -> tuple[
 def between(
     branch: Branch, first: int, last: int, counts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points of a branch and, between neighbours i and i + 1, `counts[i]` more on cubics through points and tangents.
+    """Return the points `first` to `last` (inclusive) of a branch with further ones between them, on cubics given by points and tangents.
 
-    Shapes: `counts` (last - first,), the indices inclusive; u (m, N), p (m,), and which of them are no stored points (m,).
+    `counts`, shape (last - first,), is the number of points to be inserted after each point. Result: u (m, N), p (m,), and the mask (m,) of the
+    inserted points.
     """
     z = np.column_stack([branch.points, branch.values])[first : last + 1]
     slopes, chord = np.asarray(branch.tangents[first : last + 1], dtype=float), np.diff(z, axis=0)
     length = np.linalg.norm(chord, axis=1)[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         ways = slopes / np.linalg.norm(slopes, axis=1)[:, None]
-    # at a kink, or between points that do not follow one another: a straight line
+    # a straight line where a tangent deviates much from the chord: at a kink, or where the order of the points is reversed
     along = [np.sum(way * chord, axis=1, keepdims=True) for way in (ways[:-1], ways[1:])]
     start, end = (
         np.where(np.minimum(*along) > 0.3 * length, length * way, chord) for way in (ways[:-1], ways[1:])
@@ -95,7 +96,7 @@ def between(
 def _strands(
     branch: Branch, x: str, y: str, u: np.ndarray, p: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Both measures of some solutions: one line, or one for each point of a cycle."""
+    """Return the measures x and y of solutions (u, p), one pair of arrays per line: a single one, or one per point of a cycle."""
     columns = []
     for name in (x, y):
         found = p[:, None] if name == branch.parameter else None
@@ -108,7 +109,7 @@ def _strands(
 
 
 def _missing(axes: Axes, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
-    """How many points are wanted between neighbours, shape (n - 1,)."""
+    """Return the number of points to be inserted after each point of a line, shape (n - 1,)."""
     page = axes.transData.transform(np.column_stack([xs, ys]))
     steps = np.diff(page, axis=0)
     angle = np.arctan2(steps[:, 1], steps[:, 0])

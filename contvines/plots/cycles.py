@@ -1,4 +1,4 @@
-"""One cycle of a flow: its states over a period, and its phase portrait."""
+"""Picture and animation of a cycle of a flow: phase portrait, and states over a period."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ def plot_cycle(
     style: Style = None,
     coordinates: tuple[int, int] = (0, 1),
 ) -> Figure:
-    """Draw a cycle: the phase portrait, with the time series beside it in a figure of its own.
+    """Draw the phase portrait of a cycle; a new figure also has the time series of the first four states.
 
     Parameters
     ----------
     orbit : CycleOrbit
     axes, figsize, style
-        As for :func:`contvines.plots.diagram.plot_diagram`; given axes are for the phase portrait alone.
+        As for :func:`contvines.plots.diagram.plot_diagram`; given axes get the phase portrait.
     coordinates : (int, int)
-        Of the phase portrait; of a single state, the state over time.
+        Indices of the states on the x and y axes of the phase portrait. A flow of one state is drawn over time.
 
     Raises
     ------
     ValueError
-        If the flow has no such coordinates.
+        If an index is out of range, or there are not two of them.
     """
     times = np.linspace(0.0, orbit.period, SAMPLES)
     states = orbit(times)
@@ -74,22 +74,22 @@ def animate_cycle(
     style: Style = None,
     coordinates: tuple[int, int] = (0, 1),
 ) -> FuncAnimation:
-    """A point that goes round a cycle, on its phase portrait and over time.
+    """Animate a cycle: a point moves on the phase portrait, a line over the time series.
 
     Parameters
     ----------
     orbit : CycleOrbit
     path : path, optional
-        Of a gif, an mp4 (by ffmpeg) or an html page with a player, which is written.
+        File to be written: gif, mp4 (needs ffmpeg) or an html page with a player.
     seconds, rate : float, int
-        How long the period takes, and pictures a second.
+        Duration of one period in the animation, and pictures per second.
     figsize, style, coordinates
         As for `plot_cycle`.
 
     Raises
     ------
     ValueError
-        If nothing can be written to the path, or a number is not positive.
+        If the path cannot be written, or `seconds` or `rate` is not positive.
     """
     frames = pictures(seconds, rate)
     if path is not None:

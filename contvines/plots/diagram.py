@@ -1,4 +1,4 @@
-"""The bifurcation diagram: branches as curves, special points as labelled marks, which are laid out again when the limits change."""
+"""Picture of a bifurcation diagram: branches as curves, special points as labelled marks; the layout follows the limits of the axes."""
 
 from __future__ import annotations
 
@@ -29,12 +29,14 @@ from .legends import hold_legend, place_legend
 from .style import PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, Mark, axis_label, line_of, mark_of
 
 COLORS = ("branch", "word", "stability")
-RUNAWAY = 6.0  # a range so many times wider than where special points and most points lie is not shown whole
-UPRIGHT = 1e-6  # part of the width of a picture: a line that is narrower stands upright
-MOST = (4.0, 96.0)  # per cent: where most points lie
-TEXT = 0.85  # size of labels in units of font.size
-POINTS, NAMES = (6.5, 0.3), (3.5, 0.15)  # labels of points, of branches: so many, and more per square inch
-FEW = 4.5  # inches: in narrower axes fewer labels stand together
+# a range of y longer than this multiple of the range of most points and of the special points is cut
+RUNAWAY = 6.0
+UPRIGHT = 1e-6  # relative to the width of the axes: narrower lines do not set the range of y
+MOST = (4.0, 96.0)  # per cent: percentiles of y between which most points lie
+TEXT = 0.85  # font size of labels, relative to font.size
+# largest number of labels of points, and of branches: constant part, and part per square inch
+POINTS, NAMES = (6.5, 0.3), (3.5, 0.15)
+FEW = 4.5  # inches: in narrower axes fewer labels share a place
 
 
 @hinting
@@ -57,41 +59,41 @@ def plot_diagram(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw a graph: solid stable, dashed unstable, dotted virtual, special points marked and labelled.
+    """Draw a graph: stable parts solid, unstable ones dashed, virtual ones dotted, special points as labelled marks.
 
     Parameters
     ----------
     graph : Graph
     x, y : str, optional
         Names of measures; by default the continuation parameter, and the problem's `default_measure` or first measure.
-        Where a measure has a value at each point of a cycle (`x0` of a map), every one is drawn.
+        If a measure has a value at each point of a cycle (`x0` of a map), all of them are drawn.
     axes : Axes, optional
-        Drawn on; without, a new figure. A second graph on the same axes shares the legend; its labels have a prime, or `name`.
+        Default: a new figure. A second graph on the same axes shares the legend; its labels have a prime, or begin with `name`.
     labels : bool or sequence of str
-        Write the labels of branches and special points: all for which there is room, none, or exactly these.
+        Labels of branches and special points to be written: all that find room, none, or exactly these.
     ends : bool
-        Mark the ends of the interval, too.
+        Also mark the ends of the interval.
     marks : bool or sequence of str
-        Mark the special points: all, none, or those of these kinds, by name or label: ``["fold", "SB"]``.
+        Special points to be marked: all, none, or those of these kinds, by name or label: ``["fold", "SB"]``.
     words : bool
-        Write the words of the motions along the branches instead of the branches' labels.
+        Write the words of the motions beside the branches, instead of the branches' labels.
     color : {"branch", "word", "stability"}
-        What a colour stands for.
+        Meaning of the colours.
     legend : bool or str
-        Whether, or where: "inside", "beside", "below", or a place that matplotlib knows.
+        Whether there is a legend, or its place: "inside", "beside", "below", or a location of matplotlib.
     name : str, optional
-        Put before the labels, to tell graphs on the same axes apart.
+        Prefix of the labels, which distinguishes graphs on the same axes.
     xlim, ylim : (float, float), optional
-        Limits; labels are placed and curves refined for what is seen then, and again when the limits change later. With
-        `xlim` alone the height is that of what is seen.
+        Limits of the axes. Labels are placed and curves refined for these limits, and again when the limits change. With
+        `xlim` alone, the limits of y are those of the visible curves.
     inset : bool or ((float, float), (float, float)), optional
-        Draw the most crowded place, or these limits, once more in a free part of the axes. By default where a figure of
-        ours has a crowded place and room.
+        Enlarge the most crowded part, or the part with these limits, in a free part of the axes. By default a new figure with a
+        crowded part has an inset, if there is room.
     figsize : (float, float), optional
-        Inches, of a new figure.
+        Size of a new figure in inches.
     style : str or mapping, optional
-        "aps", "elsevier", "springer" (one column), "grey", "slides", a style of matplotlib's, several of them ("aps,grey"), or
-        rcParams; they come before the package's.
+        "aps", "elsevier", "springer" (one column), "grey", "slides", a style of matplotlib, several of them ("aps,grey"), or
+        rcParams; they override those of the package.
 
     Returns
     -------
@@ -100,7 +102,7 @@ def plot_diagram(
     Raises
     ------
     ValueError
-        If the problem has no such measure, a label is unknown, or an option has no such value.
+        If a measure, a label, or the value of an option is unknown.
     """
     if color not in COLORS:
         raise ValueError(
@@ -132,9 +134,16 @@ def draw_diagram(
     limits: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None),
     **look: Any,
 ) -> Picture:
-    """Draw a graph as :func:`plot_diagram` does, in the style of the moment; `own` says whether the figure is ours to be laid out.
+    """Draw a graph as :func:`plot_diagram` does, with the present rcParams.
 
-    `look` are the further options of :class:`Picture`.
+    Parameters
+    ----------
+    own : bool
+        Whether the figure was made by `new_figure`: only then its layout may change.
+    limits : pair
+        `xlim` and `ylim`.
+    **look
+        Further options of :class:`Picture`.
     """
     x, y = x or graph.parameter, y or default_measure(graph)
     picture = Picture(axes, graph, x, y, kinds=_marked(graph, marks), **look)
@@ -146,9 +155,9 @@ def draw_diagram(
     ):
         if not text:
             label(axis_label(name, unit=graph.units.get(name), notation=graph.notation))
-    picture.refine()  # what the layout changes of the axes' size later does not show in it
+    picture.refine()  # changes of the axes' size by the layout below are too small to need another refinement
     if limits[0] is not None:
-        frame(axes, *limits)  # once more: curves between stored points are known now
+        frame(axes, *limits)  # again, with the points inserted between the stored ones
     picture.seen()
     place_legend(axes, picture.handles(), legend, own, remarks=picture.remarks)
     if own:
@@ -162,7 +171,7 @@ def draw_diagram(
 
 
 def _marked(graph: Graph, marks: bool | Sequence[str]) -> list[str] | None:
-    """Names of the kinds that get marks; None for all."""
+    """Return the names of the kinds to be marked; None for all."""
     if isinstance(marks, bool):
         return None if marks else []
     kinds = {**BY_NAME, **graph.own_kinds}
@@ -177,7 +186,7 @@ def _marked(graph: Graph, marks: bool | Sequence[str]) -> list[str] | None:
 
 
 def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float] | None) -> None:
-    """Set the limits: the asked ones, else all that is drawn between those across, but the far ends of branches that run away."""
+    """Set the limits of the axes; by default they show all that is drawn, without the far ends of branches that run away in y."""
     axes.margins(0.04)
     axes.autoscale_view()
     if xlim is not None:
@@ -192,7 +201,7 @@ def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float
         xy = np.asarray(line.get_xydata(), dtype=float)
         if not len(xy) or not line.get_transform().contains_branch(axes.transData):
             continue
-        count = 20 if is_curve(line) else 1  # between points, too: near the edges
+        count = 20 if is_curve(line) else 1  # a segment may cross the edges
         steps = np.arange(count * (len(xy) - 1) + 1) / count
         x, y = (np.interp(steps, np.arange(len(xy)), values) for values in xy.T)
         seen = (x >= left) & (x <= right) & np.isfinite(y) & (not log or y > 0.0)
@@ -200,7 +209,7 @@ def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float
         if len(xy) == 1:
             marks.append(drawn[-1])
         elif seen.any() and np.ptp(x[seen]) > UPRIGHT * (right - left):
-            leaning.append(drawn[-1])  # not families of cycles at one value, which have all amplitudes
+            leaning.append(drawn[-1])  # a family of cycles at one parameter value has all amplitudes
     heights, most, spots = map(np.concatenate, (drawn, leaning, marks))
     if not heights.size:
         return
@@ -216,7 +225,7 @@ def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float
 
 
 class Picture:
-    """One graph on some axes; options as for :func:`plot_diagram`, `kinds` of special points that get marks (None: all)."""
+    """A graph drawn on axes. Options as for :func:`plot_diagram`; `kinds`: names of the kinds to be marked (None: all)."""
 
     def __init__(
         self, axes: Axes, graph: Graph, x: str, y: str, *, labels: bool | Sequence[str] = True, words: bool = False,
@@ -227,11 +236,11 @@ class Picture:
         self.labels, self.words, self.kinds, self.ends, self.wanted = labels, words, kinds, ends, inset
         known = pictures_on(axes)
         axes.contvines_pictures = [*known, self]  # type: ignore[attr-defined]
-        self.name = (f"{name} ", "") if name else ("", "′" * len(known))  # before and after a label
+        self.name = (f"{name} ", "") if name else ("", "′" * len(known))  # prefix and suffix of labels
         self.first_color = sum(len(picture.graph.branches) for picture in known)
         self.rc = rcParams.copy()
         self.remarks = [remark] if (remark := undrawn(graph, x, y)) else []
-        self.explained: dict[str, tuple[int, Artist]] = {}  # by label: rank in the legend, what is shown
+        self.explained: dict[str, tuple[int, Artist]] = {}  # legend: label -> rank and handle
         self.curves: list[Curve] = []
         self.tint: dict[str, str] = {}
         self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
@@ -239,7 +248,7 @@ class Picture:
         self.inset: tuple[Picture, InsetIndicator] | None = None
 
     def draw(self) -> None:
-        """Branches, special points, and stretches on which these cannot be distinguished."""
+        """Draw branches, special points, and marks of unresolved stretches."""
         self._draw_branches()
         self._draw_points()
         for entry in self.graph.unresolved:
@@ -253,7 +262,7 @@ class Picture:
                 self._explain_mark(UNRESOLVED)
 
     def _draw_branches(self) -> None:
-        """Each branch as curves, a run of points in one state after the other; a pale band beneath what is proved."""
+        """Draw each branch as curves, one per piece with the same stability; a pale band below the proved parts."""
         colors = [entry.get("color", "black") for entry in rcParams["axes.prop_cycle"]]
         words: dict[str, str] = {}
         for i, branch in enumerate(self.graph.branches.values(), self.first_color):
@@ -262,7 +271,7 @@ class Picture:
                 word = str(branch.description.get("word") or branch.description.get("name", ""))
                 tint = words.setdefault(word, colors[len(words) % len(colors)])
             self.tint[branch.label] = tint
-            xs, ys = (measured(branch, name) for name in (self.x, self.y))  # or refused in a sentence
+            xs, ys = (measured(branch, name) for name in (self.x, self.y))  # unknown measures: ValueError
             for first, last, stable in branch.pieces():
                 state = STATE_OF[stable] if branch.real else "virtual"
                 tint = STATE_COLORS[state] if self.color == "stability" else tint
@@ -291,7 +300,7 @@ class Picture:
                 continue
             px, py = measure_at(branch, point, self.x), measure_at(branch, point, self.y)
             if not (np.isfinite(px) and np.isfinite(py)):
-                continue  # such as B of a motion without impacts
+                continue  # for example B of a motion without impacts
             tint = "0.15" if self.color == "stability" else self.tint[branch.label]
             self.axes.plot([px], [py], zorder=6, **mark_of(point.kind, self.graph).look(tint, size))
             if proof_mark(self.graph, point.label):
@@ -301,14 +310,14 @@ class Picture:
             self.spots.append((point.label, point.kind, px, py))
 
     def seen(self) -> list[tuple[str, str, float, float]]:
-        """The special points within the limits; what their marks mean is added to the key."""
+        """Return the special points within the limits, and add the meaning of their marks to the legend."""
         found = [spot for spot in self.spots if self._inside(*spot[2:])]
         for _, kind, _, _ in found:
             self._explain_mark(mark_of(kind, self.graph))
         return found
 
     def handles(self) -> list[Artist]:
-        """What the legend shows, in order."""
+        """Return the entries of the legend, in order."""
         ranked = sorted(self.explained.values(), key=lambda entry: entry[0])
         words = (_entry(remark, linestyle="none") for remark in self.remarks)
         return [*(handle for _, handle in ranked), *words]
@@ -320,12 +329,12 @@ class Picture:
         self._explain(8, mark.name, **mark.look("0.2", 0.9 * float(self.rc["lines.markersize"])))
 
     def refine(self) -> None:
-        """Put points between the stored ones where lines have corners."""
+        """Insert points between the stored ones where lines have visible corners."""
         for curve in self.curves:
             curve.refine(self.axes)
 
     def lay_out(self) -> None:
-        """Refine curves, draw the inset and write labels anew for the limits and the size that the axes have now."""
+        """Refine the curves, and renew inset and labels, for the present limits and size of the axes."""
         with rc_context(self.rc):
             self.refine()
             hold_legend(self.axes)
@@ -337,17 +346,17 @@ class Picture:
                 self._write_labels()
 
     def follow_zoom(self) -> None:
-        """Lay out again when the limits of the axes change."""
+        """Renew the layout whenever the limits of the axes change."""
 
         def again(_: Axes) -> None:
-            self.wanted = self.wanted is True  # limits that were asked for were those of the first picture
+            self.wanted = self.wanted is True  # a region given by the user belongs to the first limits only
             self.lay_out()
 
         for change in ("xlim_changed", "ylim_changed"):
             self.axes.callbacks.connect(change, again)
 
     def _enlarge(self) -> None:
-        """Draw a crowded place, or the one that is wanted, once more in a free part of the axes."""
+        """Draw the inset: the crowded part, or the region given by the user."""
         if self.inset is not None:
             self.inset[1].remove()
             self.inset[0].axes.remove()
@@ -367,14 +376,14 @@ class Picture:
 
     def _write_labels(self) -> None:
         chosen = None if isinstance(self.labels, bool) else list(self.labels)
-        places = {kind: i for i, kind in enumerate(BY_NAME)}  # whose labels are named first
+        places = {kind: i for i, kind in enumerate(BY_NAME)}  # rank of their labels
         wanted = [
             Label(self._named(label), x, y, "black", places.get(kind, len(places)), chosen is not None)
             for label, kind, x, y in self.seen()
             if chosen is None or label in chosen
         ]
         names = self._middles(chosen)
-        if self.inset is not None:  # what the inset names is not named twice
+        if self.inset is not None:  # labels in the inset are not repeated
             inside = self.inset[0]._inside
             wanted, names = ([e for e in found if not inside(e.x, e.y)] for found in (wanted, names))
         if chosen is None:
@@ -382,7 +391,7 @@ class Picture:
             wanted = grouped(self.axes, wanted, named=2 if inches[0] < FEW else 3)
             wanted.sort(key=lambda label: label.rank)
             wanted, names = (
-                found[: int(count + more * inches.prod())]  # so many as can be read
+                found[: int(count + more * inches.prod())]  # as many as remain legible
                 for found, (count, more) in ((wanted, POINTS), (names, NAMES))
             )
         self.written = place_labels(self.axes, [*wanted, *names], self._text())
@@ -391,7 +400,7 @@ class Picture:
         return f"{self.name[0]}{label}{self.name[1]}"
 
     def _text(self) -> float:
-        """Size of the labels, in points."""
+        """Return the font size of labels in points."""
         size = float(self.rc["font.size"])
         return TEXT * size * (1.0 if size < 9.0 else shrinking(root(self.axes).get_size_inches()[0]))
 
@@ -400,7 +409,7 @@ class Picture:
         return x0 <= x <= x1 and y0 <= y <= y1
 
     def _middles(self, chosen: list[str] | None) -> list[Label]:
-        """A point halfway along what is seen of each branch, for its name; the longest first."""
+        """Return a label halfway along the longest visible piece of each branch; longest pieces first."""
         if len(self.graph.branches) < 2 and not self.words and chosen is None:
             return []
         found: dict[str, tuple[float, Label]] = {}
@@ -416,7 +425,7 @@ class Picture:
             total = np.concatenate([[0.0], np.cumsum(steps)])
             if total[-1] < 12 or (label in found and total[-1] <= found[label][0]):
                 continue
-            # never at a gap: nothing is added there
+            # at a gap the sum does not grow, so that the point is never nan
             x, y = xy[np.searchsorted(total, 0.5 * total[-1])].tolist()
             text = motion_name(curve.branch.description) if self.words else self._named(label)
             tint = "0.25" if self.color == "stability" else self.tint[label]
@@ -429,5 +438,5 @@ def _entry(label: str, **look: Any) -> Artist:
 
 
 def pictures_on(axes: Axes) -> list[Picture]:
-    """The graphs drawn on some axes."""
+    """Return the pictures drawn on axes so far."""
     return [picture for picture in getattr(axes, "contvines_pictures", []) if picture.axes is axes]

@@ -1,4 +1,4 @@
-"""Erosion curves: smallest kick and share of starts against the parameter."""
+"""Picture of erosion curves: smallest kick and share of starts over the parameter."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def plot_erosion(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw the smallest kick that leads elsewhere, and the share of starts as a filled curve with its own axis.
+    """Draw the smallest kick that leads to another motion, and on a second axis the share of starts with its confidence interval.
 
     Parameters
     ----------

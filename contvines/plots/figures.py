@@ -1,4 +1,4 @@
-"""Figures as files, and what is asked of them; the frame that all pictures share is in `contvines.shared.figures`."""
+"""Save figures; check file names, styles and sizes before any work. New figures and their layout are in `contvines.shared.figures`."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ FORMATS = ("png", "pdf", "svg", "jpg", "eps")
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:
-    """Save a figure; the name's ending chooses the format.
+    """Save a figure in the format given by the ending of the file name.
 
     Raises
     ------
     ValueError
-        If the ending is not one that can be written, or the place cannot be.
+        If the ending is unknown, or the file cannot be written.
     """
     path = Path(path)
     check_picture(path)
     with styled({"figure.constrained_layout.use": False}):
         if is_frozen(figure):
-            figure.set_layout_engine(None)  # all has its place: with an engine all is drawn once more before
+            figure.set_layout_engine(None)  # the layout is final: an engine would draw everything once more
         try:
             figure.savefig(path)
         except OSError as error:
@@ -36,30 +36,35 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
 
 def check_style(style: str | None) -> None:
-    """Refuse, before any work, a style that neither we nor matplotlib know."""
+    """Raise an error for a style that does not exist.
+
+    Raises
+    ------
+    ValueError
+    """
     with styled(style):
         pass
 
 
 def check_size(size: tuple[float, float] | None) -> None:
-    """Refuse, before any work, inches that are no picture's.
+    """Raise an error for an impossible size of a picture in inches.
 
     Raises
     ------
     ValueError
-        If a side is not between 1 and 60.
+        If width or height is not between 1 and 60.
     """
     if size is not None and not all(1.0 <= side <= 60.0 for side in size):
         raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
 
 
 def check_picture(path: str | Path) -> None:
-    """Refuse, before any work, a picture that could not be written at the end.
+    """Raise an error for the name of a picture that cannot be written.
 
     Raises
     ------
     ValueError
-        If the ending names no format, or the folder does not exist.
+        If the ending is unknown, or the folder does not exist.
     """
     path = Path(path)
     if path.suffix.lower().lstrip(".") not in FORMATS:

@@ -1,4 +1,4 @@
-"""Labels and insets: what finds room between curves and marks; a label without a clean place is left out."""
+"""Placement of labels and insets between curves and marks; labels without a free place are left out."""
 
 from __future__ import annotations
 
@@ -15,38 +15,40 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from ..shared.figures import pixels
 
 Region = tuple[tuple[float, float], tuple[float, float]]
-"""Limits of a part of the axes."""
+"""Limits in x and y of a part of the axes."""
 Box = tuple[float, float, float, float] | np.ndarray
-"""Left, low, right and high ends on the page."""
+"""Left, lower, right and upper edge on the page, in pixels."""
 
-CELL = 2.0  # pixels of the raster on which room is sought
-TAKEN = 1e3  # weight of a cell that nothing may touch, beside those of curves and marks, 1 each
-RADII = np.array([7.0, 11.0, 16.0, 24.0, 34.0, 46.0, 62.0])  # points between an anchor and its text
-LEADER = 14.0  # from this radius on a thin line leads from the text to its anchor
-ANGLES = np.pi * (0.25 + np.arange(16) / 8)  # of the way from an anchor to its text
+CELL = 2.0  # pixels: width of the cells of the raster
+TAKEN = 1e3  # weight of cells of texts, legends and insets; cells of curves and marks have weight 1
+# points: distances of a text from its anchor that are tried
+RADII = np.array([7.0, 11.0, 16.0, 24.0, 34.0, 46.0, 62.0])
+LEADER = 14.0  # points: from this distance on, a thin line joins text and anchor
+ANGLES = np.pi * (0.25 + np.arange(16) / 8)  # directions from an anchor to its text
 PLACES = np.array([(r, np.cos(a), np.sin(a)) for r in RADII for a in ANGLES])
-WORST = {False: 60.0, True: 24.0}  # cost above which a label is left out: of a point, and of a branch's name
-GAP = 3.0  # points between neighbouring texts
-AS_NEAR = 1.25  # times its distance from its own mark: a text that near to another one could be either's
-NEAR = 9.0  # points on the page between points that share a label
-CROWD = 9  # with more than so many further names at one place none of them says anything
+WORST = {False: 60.0, True: 24.0}  # largest cost of a label of a point (False), of a branch (True)
+GAP = 3.0  # points: horizontal distance of neighbouring texts
+# a text is ambiguous if another mark is nearer than this multiple of the distance from its own mark
+AS_NEAR = 1.25
+NEAR = 9.0  # points: marks nearer than this share a label
+CROWD = 9  # largest number of names left out of a shared label; beyond it, the label is the number of points
 
 
 @dataclass(frozen=True)
 class Label:
-    """A text that belongs to a place, x and y in data coordinates."""
+    """A text and its anchor (x, y) in data coordinates."""
 
     text: str
     x: float
     y: float
     color: str = "black"
-    rank: int = 0  # smaller ones are placed first; from labels at one place the first few are named
-    kept: bool = False  # placed whatever it covers; else left out where no clean place is found
-    near: bool = False  # left out rather than put far from its place: names of branches
+    rank: int = 0  # labels of smaller rank are placed first, and come first in shared labels
+    kept: bool = False  # written even if it covers something
+    near: bool = False  # only places near the anchor: labels of branches
 
 
 class Ground:
-    """What is taken of some axes, as weights on a raster of the page: curves, marks, texts, the legend, insets."""
+    """Raster of the area of axes, with a weight for each cell that is covered by a curve, mark, text, legend or inset."""
 
     def __init__(self, axes: Axes, legend: bool = True) -> None:
         self.origin = np.asarray(axes.bbox.min)
@@ -66,24 +68,24 @@ class Ground:
                 self.add_box(box.extents)
 
     def add(self, points: np.ndarray, weight: float = 1.0) -> None:
-        """Take the cells in which these points of the page, shape (n, 2), lie."""
+        """Give a weight to the cells that contain points of the page, shape (n, 2)."""
         cells = np.floor((points[np.isfinite(points).all(axis=1)] - self.origin) / CELL).astype(int)
         cells = cells[((cells >= 0) & (cells < self.raster.shape)).all(axis=1)]
         self.raster[tuple(cells.T)] = np.maximum(self.raster[tuple(cells.T)], weight)
 
     def add_box(self, box: Box) -> None:
-        """Take a box of the page (left, low, right, high), which nothing may touch."""
+        """Give the weight `TAKEN` to the cells of a box."""
         x0, y0, x1, y1 = self._cells(box)[:, 0]
         self.raster[x0:x1, y0:y1] = TAKEN
 
     def covered(self, boxes: Box) -> np.ndarray:
-        """Sums of the weights under boxes (n, 4), or one of them, shape (n,)."""
+        """Return the sum of the weights under each box, shape (n,); `boxes` has the shape (n, 4) or (4,)."""
         s = np.pad(self.raster.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         x0, y0, x1, y1 = self._cells(boxes)
         return s[x1, y1] - s[x0, y1] - s[x1, y0] + s[x0, y0]
 
     def crossed(self, lines: np.ndarray) -> np.ndarray:
-        """Sums of the weights along straight lines (n, 2 ends, 2), but for the curves on which their first ends lie, shape (n,)."""
+        """Return the sum of the weights along straight lines (n, 2 ends, 2), without the curve on which the first end lies, shape (n,)."""
         count = int(np.abs(np.diff(lines, axis=1)).max() / CELL) + 2
         places = lines[:, :1] + np.linspace(0.0, 1.0, count)[:, None] * (lines[:, 1:] - lines[:, :1])
         cells = np.floor((places - self.origin) / CELL).astype(int)
@@ -91,9 +93,9 @@ class Ground:
         return np.sum(met * ((np.cumsum(met == 0.0, axis=1) > 2) | (met >= TAKEN)), axis=1)
 
     def free(self, size: np.ndarray, inside: np.ndarray | None = None) -> np.ndarray:
-        """Lower left corners of the free boxes of a size on the page, shape (n, 2), the lowest first.
+        """Return the lower left corners of the free boxes of a size in pixels, shape (n, 2), the lowest first.
 
-        With `inside`, a bool for each cell, they must lie there, and curves may pass.
+        With `inside`, a bool per cell, boxes must lie in these cells and may cover curves.
         """
         taken = self.raster > 0.0 if inside is None else (self.raster >= TAKEN) | ~inside
         s = np.pad(taken.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
@@ -102,13 +104,13 @@ class Ground:
         return self.origin + CELL * np.argwhere(total.T == 0)[:, ::-1]
 
     def _cells(self, boxes: Box) -> np.ndarray:
-        """First and last cells of boxes (n, 4), the last ones exclusive, shape (4, n)."""
+        """Return the first and last (exclusive) cells of boxes, shape (4, n)."""
         corners = (np.atleast_2d(boxes) - np.tile(self.origin, 2)) / CELL + [0.0, 0.0, 1.0, 1.0]
         return np.clip(corners, 0, np.tile(self.raster.shape, 2)).astype(int).T
 
 
 def along(page: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
-    """Points close together along a line on the page, so that nothing slips between two of them."""
+    """Return points along a line on the page that are nearer to one another than the cells of the raster."""
     page = np.asarray(page, dtype=float)
     steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T))
     total = np.concatenate([[0.0], np.cumsum(steps)])
@@ -117,12 +119,12 @@ def along(page: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
 
 
 def is_curve(line: Line2D) -> bool:
-    """Whether a line joins its points."""
+    """Whether a line joins its points, instead of marks only."""
     return np.size(line.get_xdata()) > 1 and line.get_linestyle() not in ("None", "none", "")
 
 
 def on_page(line: Line2D) -> np.ndarray:
-    """What a curve, or the marks of a line without one, take of the page, shape (n, 2)."""
+    """Return points of the page that are covered by a curve, or by the marks of a line without one, shape (n, 2)."""
     page = line.get_transform().transform(np.asarray(line.get_xydata(), dtype=float))
     if is_curve(line):
         return along(page)
@@ -132,9 +134,9 @@ def on_page(line: Line2D) -> np.ndarray:
 
 
 def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annotation]:
-    """Write each label where it covers nothing: the cheapest of 16 places on each of a few circles about its anchor.
+    """Write labels: each at the place with the lowest cost, among 16 directions and the distances `RADII` from its anchor.
 
-    The limits of the axes must be final; `size` is that of the font, in points. Labels of places outside are ignored.
+    Limits and size of the axes must be final. `size` is the font size in points. Labels outside the axes are ignored.
     """
     unit, ground = pixels(axes), Ground(axes)
     low, high = np.asarray(axes.bbox.get_points())
@@ -169,12 +171,12 @@ def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annot
         ground.add_box(boxes[k] + GAP * unit * np.array([-1, 0, 1, 0]))
         if radii[k] >= LEADER:
             line = along([at, middles[k]])
-            ground.add(np.concatenate([line, line + [CELL, 0.0]]), TAKEN)  # so wide that none slips across
+            ground.add(np.concatenate([line, line + [CELL, 0.0]]), TAKEN)  # two cells wide
     return written
 
 
 def _claimed(boxes: np.ndarray, own: int, anchors: np.ndarray) -> np.ndarray:
-    """What it costs that texts stand nearer to something else than to what they name (by its index), or about as near."""
+    """Return the cost of boxes that are nearer to another anchor than to their own (of index `own`), or about as near, shape (n,)."""
     apart = np.maximum(np.maximum(boxes[:, None, :2] - anchors, anchors - boxes[:, None, 2:]), 0.0)
     gaps = np.hypot(apart[..., 0], apart[..., 1])
     ours, nearest = gaps[:, own], np.delete(gaps, own, axis=1).min(axis=1, initial=np.inf)
@@ -182,10 +184,7 @@ def _claimed(boxes: np.ndarray, own: int, anchors: np.ndarray) -> np.ndarray:
 
 
 def grouped(axes: Axes, labels: Sequence[Label], named: int = 3) -> list[Label]:
-    """One label for those that lie within `NEAR` points of one another on the page.
-
-    Above `named` names, "+n" stands for n more; where very many lie together, their number stands for all.
-    """
+    """Join labels within `NEAR` points of one another: "PD1, PD2", "PD1, PD2 +3" above `named` names, "20 points" for a crowd."""
     groups: list[tuple[np.ndarray, list[Label]]] = []
     for label in labels:
         spot = axes.transData.transform((label.x, label.y)) / pixels(axes)
@@ -203,29 +202,30 @@ def grouped(axes: Axes, labels: Sequence[Label], named: int = 3) -> list[Label]:
 
 
 # ------------------------------------------------------------------ insets
-CROWDED = 6  # marks that hide one another ask for an inset,
-CROWDED_SHARE = 0.35  # if they are this part of all: a picture crowded everywhere needs its room for labels
-HIDING = 11.0  # points on the page: nearer marks hide one another
-WIDEST = 0.3  # of the axes: a wider crowd is no single place
-LEAST_INSET = (1.35, 0.95)  # inches: a smaller inset shows nothing
-SIZES = np.array([(w, h) for w in range(56, 23, -4) for h in range(56, 23, -4)]) / 100.0  # of the axes
-MOST_ZOOM = 400.0
+CROWDED = 6  # smallest number of marks that hide one another in an inset's region
+CROWDED_SHARE = 0.35  # their smallest part of all marks: a picture that is crowded everywhere has no inset
+HIDING = 11.0  # points: marks nearer than this hide one another
+WIDEST = 0.3  # relative to the axes: largest extent of the marks
+LEAST_INSET = (1.35, 0.95)  # inches: smallest inset, tick labels included
+# sizes of the inset that are tried, relative to the axes
+SIZES = np.array([(w, h) for w in range(56, 23, -4) for h in range(56, 23, -4)]) / 100.0
+MOST_ZOOM = 400.0  # largest magnification of an inset
 
 
 def crowded_region(axes: Axes, spots: np.ndarray) -> Region | None:
-    """Limits of the place where most marks, `spots` (n, 2) in data coordinates, hide one another; None where no place is crowded."""
+    """Return the limits of the region where most marks hide one another, or None; `spots`: marks in data coordinates, shape (n, 2)."""
     if len(spots) < CROWDED:
         return None
     page = axes.transData.transform(spots)
     near = np.hypot(*(page[:, None] - page[None]).T) < HIDING * pixels(axes)
-    for _ in range(int(np.ceil(np.log2(len(spots)))) + 1):  # chains of neighbours belong together
+    for _ in range(int(np.ceil(np.log2(len(spots)))) + 1):  # chains of neighbours are one crowd
         near = near @ near
     crowd = page[near[np.argmax(near.sum(axis=1))]]
     size, frame = np.ptp(crowd, axis=0), np.asarray(axes.bbox.size)
     if len(crowd) < max(CROWDED, CROWDED_SHARE * len(spots)) or np.any(size > WIDEST * frame):
         return None
     if np.all(size < 0.02 * pixels(axes)):
-        return None  # all at one point, which no zoom takes apart
+        return None  # all at one point, which no magnification separates
     half = np.maximum(0.725 * size, 0.5 * frame / MOST_ZOOM)
     middle = 0.5 * (crowd.min(axis=0) + crowd.max(axis=0))
     (x0, y0), (x1, y1) = axes.transData.inverted().transform([middle - half, middle + half]).tolist()
@@ -233,9 +233,9 @@ def crowded_region(axes: Axes, spots: np.ndarray) -> Region | None:
 
 
 def add_inset(axes: Axes, region: Region, size: float) -> tuple[Axes, InsetIndicator] | None:
-    """Empty axes with the limits of a region in the largest free rectangle; a frame and two lines say what they show.
+    """Return empty inset axes with the limits of a region, in the largest free rectangle, and its indicator; None if there is no room.
 
-    The tick labels have this size, in points. None where there is no room.
+    `size` is the font size of the tick labels in points.
     """
     ground, frame, unit = Ground(axes), np.asarray(axes.bbox.size), pixels(axes)
     corners = axes.transData.transform(np.transpose(region))
@@ -247,7 +247,7 @@ def add_inset(axes: Axes, region: Region, size: float) -> tuple[Axes, InsetIndic
             break
     else:
         return None
-    ticks = np.array([4.2, 1.9]) * size * unit  # their labels stand at the left and below
+    ticks = np.array([4.2, 1.9]) * size * unit  # room for their labels at the left and below
     x, y = (places[0] + 0.5 * edge + ticks - axes.bbox.min) / frame
     width, height = (extent - ticks) / frame
     inset = axes.inset_axes((x, y, width, height), zorder=7)

@@ -1,4 +1,4 @@
-"""The legend of a picture: what its lines and marks mean, once per axes, in a place that hides nothing."""
+"""The legend of a picture: one per axes, in a place where it covers nothing."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from contvines.shared.near_names import did_you_mean
 
 from .labels import Ground
 
-NARROW = 5.0  # inches: in a narrower figure the legend stands below the axes
+NARROW = 5.0  # inches: in narrower figures the legend is below the axes
 PLACES = ("inside", "beside", "below")
 
 
@@ -27,26 +27,26 @@ def place_legend(
     usual: str = "inside",
     remarks: Sequence[str] = (),
 ) -> None:
-    """Write or renew the legend of axes where the user wants it, or where it squeezes and hides nothing.
+    """Draw or renew the legend of axes, at the place that the user asks for, or where it covers nothing and leaves room for the axes.
 
     Parameters
     ----------
     axes : Axes
     handles : list of Artist
-        With labels, besides those that stand in the legend already and those on the axes; each label comes once.
+        Entries with labels, in addition to those of the present legend and of the axes; each label appears once.
     where : bool or str
-        False: none. True: the usual place, but below in a narrow figure. "inside", "beside", "below", or a place of matplotlib's.
+        False: none. True: the usual place, but below in a narrow figure. "inside", "beside", "below", or a location of matplotlib.
     own : bool
-        Whether the figure is ours to be laid out; else True means inside.
+        Whether the figure was made by `new_figure`; in other figures True means inside.
     usual : {"inside", "beside", "below"}
-        What True means in a wide figure of ours; inside gives way to beside where it would cover something.
+        Meaning of True in a wide new figure; a legend that would cover something inside is drawn beside the axes.
     remarks : sequence of str
-        Labels among `handles` that are words alone; below they go to the label of the axis.
+        Labels among `handles` without a line or mark; below the axes they are added to the label of the x axis.
 
     Raises
     ------
     ValueError
-        If `where` is no place.
+        If `where` is unknown.
     """
     before = axes.get_legend()
     pairs = [] if before is None else zip(before.get_texts(), before.legend_handles, strict=False)
@@ -81,11 +81,11 @@ def place_legend(
         if own and isinstance(engine, ConstrainedLayoutEngine):
             engine.set(w_pad=0.09)  # inches: texts are a little wider at the resolution of a file
         figure.draw_without_rendering()
-        figure.draw_without_rendering()  # the axes become narrower, and then their ticks fewer
+        figure.draw_without_rendering()  # twice: narrower axes have fewer ticks, which changes the layout again
 
 
 def hold_legend(axes: Axes) -> None:
-    """Keep the legend where it is now, whatever is written later."""
+    """Fix the legend at its present position."""
     legend = axes.get_legend()
     if legend is not None:
         place = axes.transAxes.inverted().transform(legend.get_window_extent().min)

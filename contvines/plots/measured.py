@@ -1,4 +1,4 @@
-"""Pictures beside a measurement: transients with and without the absorber, and what a calibration leaves over."""
+"""Pictures of responses with and without the absorber (transients, spectral densities), and of a calibration."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .legends import place_legend
 from .style import BARE, BLUE, RED, axis_label
 
 BESIDE: dict[str, Any] = {"color": BARE, "linestyle": (0, (4, 1.5))}
-PLAIN = (-2, 3)  # powers of ten that ticks show in full
+PLAIN = (-2, 3)  # powers of ten between which tick labels have no exponent
 
 
 @hinting
@@ -28,15 +28,15 @@ def plot_transient(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw a motion, or its energy, with the absorber and without.
+    """Draw displacements, or the energy on a logarithmic axis, with and without the absorber.
 
     Parameters
     ----------
     series : sequence of (name, unit, values)
-        The first is time; what is named "bare_..." is without absorber, what is named "relative..." is not drawn. An "energy" has a
-        logarithmic axis.
+        The first one is time. Names that begin with "bare" mean the machine without absorber; those that begin with "relative" are
+        not drawn.
     hits : float array, optional
-        Instants of impacts, ticks at the lower edge.
+        Times of impacts, drawn as ticks at the lower edge.
     axes, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """
@@ -71,17 +71,17 @@ def plot_densities(
     densities: Mapping[str, tuple[np.ndarray, str]],
     figsize: Size = None,
 ) -> Figure:
-    """Draw spectral densities of responses over the frequency, logarithmically.
+    """Draw spectral densities of responses over the frequency, on a logarithmic axis.
 
     Parameters
     ----------
     frequencies : float array (k,)
     unit : str
-        Of these.
+        Unit of the frequencies.
     densities : mapping
-        Name -> values (k,) and unit; "bare" and "tuned" are lines to compare with.
+        Name -> values (k,) and unit. "bare": without absorber; "tuned": with a tuned absorber; "oscillator": with the absorber.
     figsize : (float, float), optional
-        Inches.
+        Size in inches.
     """
     looks: dict[str, dict[str, Any]] = {
         "bare": {**BESIDE, "label": "without absorber"},
@@ -112,17 +112,18 @@ def plot_calibration(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw a measured response and the computed one, or, of impact times, what is left over.
+    """Draw a measured response and the computed one; for impact times their differences.
 
     Parameters
     ----------
     places : float array (n,)
-        Instants of impacts, or values of the parameter that was swept.
+        Measured times of impacts, or values of the parameter.
     residuals : float array (n,)
-        Computed less measured.
+        Computed minus measured values.
     heights : float array (n,), optional
-        The measured response.
+        Measured response; None for impact times.
     xlabel, ylabel : str
+        Labels of the axes.
     axes, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """

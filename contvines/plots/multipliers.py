@@ -1,4 +1,4 @@
-"""Multipliers of a branch: against the parameter, and on the complex plane with the unit circle."""
+"""Picture of the multipliers of a branch: over the parameter, and in the complex plane with the unit circle."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from .style import BLUE, RED, axis_label
 
 COLORS = (BLUE, RED, "#1b7837", "#7b3294", "#a6611a", "#017a79")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)))
-SHOWN = 1e-4, 1e4  # sizes of multipliers: a graze sends one to infinity
-MOST = 12  # curves drawn: the largest ones
+SHOWN = 1e-4, 1e4  # smallest and largest modulus on the axis: at a graze one becomes infinite
+MOST = 12  # largest number of curves
 
 
 @hinting
@@ -31,21 +31,22 @@ def plot_multipliers(
     figsize: Size = None,
     style: Style = None,
 ) -> Figure:
-    """Draw the moduli of a branch's multipliers against the parameter, and the multipliers themselves.
+    """Draw the moduli of a branch's multipliers over the parameter, and the multipliers in the complex plane.
 
-    For flows (spectrum "flow") the real parts and the imaginary axis take the place of moduli and circle. Colours of
-    curves are the ranks by size (keyed on the left), colours of dots the parameter (keyed beside the plane).
+    Spectrum "flow" (equilibria): eigenvalues, with their real parts instead of moduli and the imaginary axis instead of the circle. Curves are
+    coloured by rank in size, dots by the value of the parameter.
 
     Parameters
     ----------
     branch : Branch
     axes, legend, figsize, style
-        As for :func:`contvines.plots.diagram.plot_diagram`; of two axes the second has the plane, and a small new figure has the moduli alone.
+        As for :func:`contvines.plots.diagram.plot_diagram`; one of them for the moduli, or two for moduli and
+        plane. A small new figure has the moduli only.
 
     Raises
     ------
     ValueError
-        If the branch has no multipliers, or there are more than two `axes`.
+        If the branch has no multipliers, or the number of `axes` is not one or two.
     """
     spectrum = np.asarray(branch.multipliers)
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:

@@ -1,4 +1,4 @@
-"""The graph itself: branches as boxes, switches as arrows."""
+"""Picture of the connections of a graph: branches as boxes, switches as arrows."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from ..graph.table import short_word
 from ..shared.figures import Size, Style, drawing, fit, settle
 from .labels import Ground
 
-COLUMNS = 6  # at most, side by side
-ASIDE = 0.42  # columns: how far beside its column a bent arrow runs
-COMPACT = 0.85  # inches for a box and an arrow where boxes have labels alone
-ROW = 0.175  # inches that a row needs there
-ALONG = (0.5, 0.64, 0.36, 0.74, 0.26)  # where on its arrow a label may stand, the first free one
+COLUMNS = 6  # largest number of columns side by side
+ASIDE = 0.42  # in widths of a column: distance of a bent arrow from the middle of its column
+COMPACT = 0.85  # inches: width of a column in a small figure, whose boxes have labels only
+ROW = 0.175  # inches: height of a row in a small figure
+ALONG = (0.5, 0.64, 0.36, 0.74, 0.26)  # relative to an arrow: positions of its label that are tried
 
 Places = dict[str, tuple[float, float]]
 
@@ -30,15 +30,15 @@ def plot_network(
 ) -> Figure:
     """Draw branches (boxes: label, word, range) from left to right by the number of switches that lead to them.
 
-    A solid box is a real branch, a dotted one a virtual branch; a grey filling says that some of it is stable. After
-    `COLUMNS` columns the picture goes on below, from right to left and so on, as one ploughs a field. In a small figure boxes have
-    labels alone, and what is too many switches away to find room is left out and counted.
+    Solid boxes are real branches, dotted ones virtual branches; branches with stable parts are grey. After `COLUMNS` columns the
+    picture goes on below, from right to left, then again from left to right. In a small figure boxes have labels only; branches that
+    find no room are left out, those after the most switches first, and the title gives their number.
 
     Parameters
     ----------
     graph : Graph
     axes, figsize, style
-        As for :func:`contvines.plots.diagram.plot_diagram`; without a size the figure is as large as the graph needs.
+        As for :func:`contvines.plots.diagram.plot_diagram`; by default the size depends on the number of branches.
     """
     layers = _layers(graph)
     place = _places(layers, COLUMNS)
@@ -46,7 +46,7 @@ def plot_network(
     needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6))
     with drawing(axes, style, figsize or needed) as (figure, axes, own):
         across, up = np.array(axes.bbox.size) / figure.dpi
-        # boxes with labels alone, as many side by side as leave room for arrows
+        # boxes with labels only; as many columns as leave room for arrows
         compact = across < 0.8 * needed[0] and (figsize is not None or not own)
         size = 6.0 if compact else 8.0
         if compact:
@@ -94,7 +94,7 @@ def _box(axes: Axes, branch: Branch, at: tuple[float, float], size: float, compa
 
 
 def _write(axes: Axes, text: str, ends: np.ndarray, bend: float, size: float, aside: float) -> None:
-    """Put a label on its arrow where it covers no box and no other label, else in the arrow's middle."""
+    """Write a label on its arrow where it covers neither a box nor another label, else in the middle of the arrow."""
     ground, white = Ground(axes), {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"}
     look = {"ha": "left" if aside else "center", "va": "center", "fontsize": size, "bbox": white, "zorder": 4}
     written = axes.text(0.0, 0.0, text, **look)
@@ -111,7 +111,7 @@ def _write(axes: Axes, text: str, ends: np.ndarray, bend: float, size: float, as
 
 
 def _pairs(graph: Graph) -> dict[tuple[str, str], tuple[list[str], bool]]:
-    """By the two branches that switches tie: at which points, and whether they were found both ways."""
+    """Return (source, target) -> labels of the points that connect them, and whether switches were found in both directions."""
     pairs: dict[tuple[str, str], tuple[list[str], bool]] = {}
     for switch in graph.switches:
         key, back = (switch.source, switch.target), (switch.target, switch.source)
@@ -125,7 +125,7 @@ def _pairs(graph: Graph) -> dict[tuple[str, str], tuple[list[str], bool]]:
 
 
 def _bend(axes: Axes, place: Places, source: str, target: str) -> float:
-    """Curvature of an arrow: straight, unless it would run behind a box between its ends."""
+    """Return the curvature of an arrow: 0 unless a box lies between its ends."""
     one, two = np.array(place[source]), np.array(place[target])
     (dx, dy), (ax, _) = two - one, one
     for label, at in place.items():
@@ -135,7 +135,7 @@ def _bend(axes: Axes, place: Places, source: str, target: str) -> float:
         if 0 < share < 1 and np.all(np.abs(one + share * (two - one) - at) < 0.3):
             if dx != 0.0:
                 return 0.3
-            # beside its own column, at the edge of the picture if that is near
+            # around the boxes of its column: on the right in the last column, else on the left
             outside = 1.0 if ax > 0 and ax == max(x for x, _ in place.values()) else -1.0
             across, up = np.abs(axes.transData.transform((1.0, dy)) - axes.transData.transform((0.0, 0.0)))
             return float(outside * 2.0 * ASIDE * across / up * np.sign(dy))
@@ -143,13 +143,13 @@ def _bend(axes: Axes, place: Places, source: str, target: str) -> float:
 
 
 def _extent(place: Places) -> tuple[float, float]:
-    """How many columns there are, and how many rows."""
+    """Return the numbers of columns and rows."""
     x, y = np.array([*place.values()] or [(0.0, 0.0)]).T
     return float(x.max()) + 1.0, float(np.ptp(y)) + 1.0
 
 
 def _layers(graph: Graph) -> list[list[str]]:
-    """Labels by the number of switches that lead to them, each layer in the graph's order."""
+    """Return the labels of branches in layers, by the number of switches that lead to them; each layer in the order of the graph."""
     depth: dict[str, int] = {}
     for label in graph.branches:
         front = set() if label in depth else {label}
@@ -165,7 +165,7 @@ def _layers(graph: Graph) -> list[list[str]]:
 
 
 def _places(layers: list[list[str]], columns: int) -> Places:
-    """Where each box stands: layers as columns, so many of them in a band, the bands below one another."""
+    """Return the position of each box: layers are columns, `columns` of them form a band, and bands lie below one another."""
     place: Places = {}
     top = 0
     for first in range(0, len(layers), columns):
@@ -185,6 +185,6 @@ def _caption(branch: Branch) -> str:
     periods = about.get("periods")
     named = "  ".join([branch.label, *filter(None, [word, f"k={periods}" if periods else ""])])
     low, high = branch.range
-    digits = next((d for d in range(4, 17) if f"{low:.{d}g}" != f"{high:.{d}g}"), 4)  # that tell them apart
+    digits = next((d for d in range(4, 17) if f"{low:.{d}g}" != f"{high:.{d}g}"), 4)  # that distinguish them
     span = " to ".join(dict.fromkeys(f"{end:.{digits}g}" for end in branch.range))
     return f"{named}\n{branch.parameter} {span}"

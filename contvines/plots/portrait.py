@@ -1,4 +1,4 @@
-"""One solution: the picture that its problem knows how to draw, else its numbers."""
+"""Picture of one solution: its own `plot` method, else the points of a cycle or the entries of the vector."""
 
 from __future__ import annotations
 
@@ -16,15 +16,21 @@ from .style import BLUE
 def plot_portrait(
     orbit: object, *, axes: Axes | None = None, figsize: Size = None, style: Style = None, **options: object
 ) -> Figure:
-    """Draw an orbit: its own `plot()` where it has one, else the points of a cycle or the entries of a vector.
+    """Draw an orbit with its own `plot` method; without one, the points of a cycle of a planar map or the entries of a vector.
 
     Parameters
     ----------
-    orbit : what `SpecialPoint.orbit` or `Branch.orbit(i)` returned.
+    orbit : object
+        Result of `SpecialPoint.orbit` or `Branch.orbit(i)`.
     axes, figsize, style
-        As for :func:`contvines.plots.diagram.plot_diagram`; on given axes an orbit draws its phase portrait alone.
+        As for :func:`contvines.plots.diagram.plot_diagram`; given axes get the phase portrait.
     **options
-        For the orbit's own `plot()`.
+        Further options of the orbit's `plot` method.
+
+    Raises
+    ------
+    TypeError
+        If an orbit without a `plot` method gets further options.
     """
     if isinstance(orbit, Drawable):
         given = {"axes": axes, "figsize": figsize, "style": style, **options}

@@ -1,4 +1,4 @@
-"""What things look like in every picture: line styles, marks of special points, names of axes."""
+"""Line styles, colours, marks of special points, and labels of axes of all pictures."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from ..loci.locus import Locus
     from ..survey.results import Survey
 
-# line styles of the states of an orbit; what nobody has asked for is drawn solid, and named
+# line styles by state; unknown: stability was not computed
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
-WIDTHS = {"stable": 1.25, "unknown": 1.1, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
-BLUE, RED, BARE = "#0b3c6f", "#b5121b", "0.55"  # ours, what is measured or failed, what is compared with
+WIDTHS = {"stable": 1.25, "unknown": 1.1, "unstable": 0.88, "virtual": 0.88}  # relative to lines.linewidth
+BLUE, RED, BARE = "#0b3c6f", "#b5121b", "0.55"  # computed; measured or failed; for comparison
 STATE_COLORS = {"stable": BLUE, "unknown": "#4d4d4d", "unstable": "#d9484b", "virtual": "#8a8a8a"}
-HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")  # told apart without colours
-PROVED = {"color": "#7fc97f", "alpha": 0.45}  # beneath what is proved
-LOCI = {  # colours by kind
+HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")  # areas differ without colours
+PROVED = {"color": "#7fc97f", "alpha": 0.45}  # bands below proved parts
+LOCI = {  # colours of loci by kind
     "fold": BLUE,
     "symmetry-breaking": "#1b7f4b",
     "branch-point": "#5b8c1a",
@@ -29,7 +29,7 @@ LOCI = {  # colours by kind
     "neimark-sacker": "#7c3aed",
     "hopf": "#7c3aed",
 }
-BORDERS = {  # borders share one family
+BORDERS = {  # colours of loci of borders by kind
     "wall-graze": "#8b5e3c",
     "velocity-graze": "#4b5563",
     "stick": "#a3861a",
@@ -46,14 +46,14 @@ STATE_OF = {True: "stable", False: "unstable", None: "unknown"}
 
 @dataclass(frozen=True)
 class Mark:
-    """How a kind of special point is drawn."""
+    """Name and marker of a kind of special points."""
 
     name: str
     marker: str
     filled: bool = False
 
     def look(self, color: str, size: float) -> dict[str, Any]:
-        """Arguments of `plot` to draw it."""
+        """Return arguments of `Axes.plot` for the mark; `size` in points."""
         return {
             "linestyle": "none",
             "marker": self.marker,
@@ -67,7 +67,7 @@ class Mark:
 
 MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in BY_NAME.values()}
 PLAIN = Mark("special point", "o")
-LIMITS = {  # of cycles of a long period
+LIMITS = {  # names of loci of cycles of long period, by their limit
     "heteroclinic": "heteroclinic cycle",
     "saddle-node": "saddle-node on the cycle",
     "at-rest": "cycle that comes to rest",
@@ -76,13 +76,13 @@ UNRESOLVED = Mark("unresolved", "s")
 
 
 def mark_of_locus(locus: Locus) -> Mark:
-    """That of its special points, called after what they are."""
+    """Return the mark of a locus: that of its special points, with the name of the limit for cycles of long period."""
     mark = MARKS.get(locus.kind, PLAIN)
     return replace(mark, name=LIMITS.get(locus.limit, mark.name))
 
 
 def line_of(state: str, color: str) -> dict[str, Any]:
-    """Arguments of `plot` to draw a branch in a state."""
+    """Return arguments of `Axes.plot` for a branch in a state, a key of `STATES`."""
     from matplotlib import rcParams
 
     width = WIDTHS[state] * float(rcParams["lines.linewidth"])
@@ -90,20 +90,20 @@ def line_of(state: str, color: str) -> dict[str, Any]:
 
 
 def mark_of(kind: str, graph: Graph) -> Mark:
-    """How a kind of special point of a graph is drawn, one of the user's own included."""
+    """Return the mark of a kind of special points, which may be defined by the user."""
     own = graph.own_kinds.get(kind)
     return Mark(own.text, own.marker, own.filled) if own else MARKS.get(kind, PLAIN)
 
 
 def axis_label(name: str, unit: str | None = None, notation: Mapping[str, str] | None = None) -> str:
-    """Label of the axis of a parameter or measure.
+    """Return the axis label of a parameter or measure.
 
     Parameters
     ----------
     name : str
     unit : str, optional
     notation : mapping, optional
-        Labels by name, as the machine drawn writes them; other names are shown as they are.
+        Labels by name, in the notation of the machine; other names are written with blanks.
     """
     label = (notation or {}).get(name, name.replace("_", " "))
     raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit or "")
@@ -111,7 +111,7 @@ def axis_label(name: str, unit: str | None = None, notation: Mapping[str, str] |
 
 
 def label_of(survey: Survey, name: str) -> str:
-    """Label of the axis of a survey: outcomes in words."""
+    """Return the axis label of a parameter or outcome of a survey."""
     words = {
         "peak": "largest response, worst of the coexisting",
         "lower_peak": "largest response, best of the coexisting",

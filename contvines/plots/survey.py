@@ -1,4 +1,4 @@
-"""Pictures of surveys: a curve over one parameter with bands of what is uncertain, a map over two with contours."""
+"""Picture of a survey: a curve over one parameter with bands for the samples, a map with contours over two, or dots for samples alone."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def plot_survey(
 ) -> Figure:
     """Draw an outcome of a survey.
 
-    Over one axis: a curve; with samples their median and bands. Over two axes: a map with contours, with samples of their worst
-    (largest) value. Samples alone: a dot per sample over each uncertain parameter.
+    Over one axis: a curve, or for samples their median with bands. Over two axes: a map with contours; for samples it shows the largest value.
+    Without axes: a dot per sample over each uncertain parameter.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ def plot_survey(
     outcome : str, optional
         By default the first.
     axes, legend, figsize, style
-        As for `contvines.plots.diagram.plot_diagram`; samples alone need as many axes as there are uncertain parameters.
+        As for `contvines.plots.diagram.plot_diagram`; without axes in the survey, one per uncertain parameter.
 
     Raises
     ------
     ValueError
-        If there is no such outcome, more than two axes vary, or `axes` are not as many as there are panels.
+        If the outcome is unknown, the survey has more than two axes, or the number of `axes` is not that of the panels.
     """
     if not survey.columns:
         raise ValueError("the survey has no outcome to draw: all of its systems failed; the notes say why")
@@ -101,13 +101,13 @@ def _curve(axes: Axes, survey: Survey, name: str, x: np.ndarray) -> None:
 
 
 def _quantile(values: np.ndarray, share: float) -> np.ndarray:
-    """A quantile of the numbers in each row; no number where a row has none."""
+    """Return a quantile of the finite numbers in each row; nan if a row has none."""
     rows = (row[np.isfinite(row)] for row in values)
     return np.array([np.quantile(known, share) if known.size else np.nan for known in rows])
 
 
 def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]) -> None:
-    """A map with contours."""
+    """Draw a map with contours, and marks of failed and partly known systems."""
     x, y = (survey.plan.axes[n] for n in along)
     values = survey.columns[name]
     if survey.plan.samples:
@@ -121,7 +121,7 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     if min(shown.shape) > 1 and known.size and known.max() > known.min():
         levels = 4 if narrower(axes, NARROW) else 7
         lines = axes.contour(x, y, shown, levels=levels, colors="white", linewidths=1.0)
-        # white alone could not be seen on the brightest colours
+        # the brightest colours hide white lines without an outline
         lines.set(path_effects=[withStroke(linewidth=1.8, foreground="0.35")])
         for text in axes.clabel(lines, fmt="%.4g", fontsize="x-small", inline=False):
             text.set_path_effects([withStroke(linewidth=3.0, foreground="0.25")])

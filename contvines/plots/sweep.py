@@ -1,4 +1,4 @@
-"""A brute-force sweep as dots, over the continued branches if there are any."""
+"""Picture of a brute-force sweep: attractors as dots, over the branches of a graph."""
 
 from __future__ import annotations
 
@@ -41,24 +41,32 @@ def plot_sweep(
 
     Parameters
     ----------
-    points : (parameter value, measure) of motions that recur; B at every impact, or over branches at the impact
-        that their lines show.
-    parameter : name of the parameter.
-    graph : branches drawn beneath, with the same measure (B at their first impact).
-    measure : name of the measure.
-    others : the same at other impacts, drawn lighter.
-    wandering : the same of motions that do not recur (modulated, chaotic).
-    bands : (parameter value, lowest, mean, highest) of the largest responses per forcing period of modulated motions.
-    axes, legend, figsize, style : as for :func:`contvines.plots.diagram.plot_diagram`.
-    units : of the parameter and the measure by name, where they have some.
-    notation : labels of axes by name of parameter or measure; the graph's by default.
+    points : sequence of (float, float)
+        (parameter value, measure) of periodic motions. B is that of every impact, or, with a graph, of the impact that its branches show.
+    parameter : str
+    graph : Graph, optional
+        Branches to be drawn, with the same measure.
+    measure : str
+        Name of the measure.
+    others : sequence of (float, float)
+        As `points`, for B at the other impacts; drawn lighter.
+    wandering : sequence of (float, float)
+        As `points`, for motions without a period (modulated, chaotic).
+    bands : sequence of (float, float, float, float)
+        (parameter value, lowest, mean, highest) of the largest responses per forcing period of modulated motions.
+    axes, legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`.
+    units : mapping, optional
+        Units by name of parameter or measure.
+    notation : mapping, optional
+        Axis labels by name of parameter or measure; by default those of the graph.
     """
     said, impacts = dict(units or {}), measure == "B"
     if notation is None and graph is not None:
         notation = graph.notation
     with drawing(axes, style, figsize) as (figure, axes, own):
         at = "" if not impacts else "B at every impact" if graph is None else "B at the first impact"
-        narrow = own and narrower(axes, NARROW)  # the axis says what it is of
+        narrow = own and narrower(axes, NARROW)  # the label of the axis names the impact
         told = "simulated" if narrow and impacts else f"simulated: {at or 'periodic'}"
         lost = {"markersize": 1.5} if impacts else {"marker": "o", "markersize": 2.6, "mfc": "none"}
         alone = impacts and graph is None
@@ -87,7 +95,7 @@ def plot_sweep(
 
 
 def draw_bands(axes: Axes, bands: Sequence[Band], color: str = WANDERING) -> None:
-    """Bars from the lowest to the highest response per forcing period of modulated motions, with their mean."""
+    """Draw bars from the lowest to the highest response per forcing period of modulated motions, with marks at the mean."""
     if len(bands):
         values, low, mean, high = zip(*bands)
         look = {"color": color, "alpha": 0.35, "lw": 2.5, "zorder": 1.5}
