@@ -192,8 +192,8 @@ def _exchange(segment: Segment) -> Located | None:
         return None
     root = locate_singular(segment, test, rough.position) or rough
     # both may be nearly zero, one on either side, without being zero
-    known = nearest(root.point) <= engine.settings.aside * max(nearest(segment.a), nearest(segment.b))
-    return Located.at(root, "branch-point") if known else None
+    on_circle = nearest(root.point) <= engine.settings.aside * max(nearest(segment.a), nearest(segment.b))
+    return Located.at(root, "branch-point") if on_circle else None
 
 
 def _near(segment: Segment, position: float, others: list[float]) -> bool:

@@ -57,7 +57,7 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     """
     engine = segment.engine
     before, after = segment.counts
-    if engine.detection == "map" and not engine.adaptive and _missed_between(segment, found):
+    if engine.detection == "map" and not engine.adaptive and _count_differs(segment, found):
         return True
     plus, minus, pairs = (b - a for a, b in zip(before, after))
     if engine.detection == "real" and plus and plus % 2 == 0:
@@ -83,18 +83,18 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
         return False
     # two multipliers that have crossed +1 may meet as a pair and be past -1 at the end
     odd = all(change % 2 == number % 2 for change, number in zip((plus, minus), explained))
-    all_counted = bool(found) and all(_others_outside(engine, event) is not None for event in found)
-    return not (engine.adaptive and odd and all_counted and not _missed_between(segment, found))
+    all_counted = bool(found) and all(_count_outside(engine, event) is not None for event in found)
+    return not (engine.adaptive and odd and all_counted and not _count_differs(segment, found))
 
 
-def _missed_between(segment: Segment, found: Sequence[Located]) -> bool:
+def _count_differs(segment: Segment, found: Sequence[Located]) -> bool:
     """Whether the number of multipliers outside the circle changes between the points found, so that a point is missing.
 
     From one end to the other, only the critical multipliers of each point found may cross the circle, at this point. Counts at the two ends are
     not enough: a pair may leave the circle between a period doubling and a fold and split on the real axis, or the multiplier that crosses +1 at a
     fold continues through infinity and returns through -1.
     """
-    passed = [_others_outside(segment.engine, event) for event in sorted(found, key=lambda e: e.position)]
+    passed = [_count_outside(segment.engine, event) for event in sorted(found, key=lambda e: e.position)]
     if not passed:
         return False
     first, last = ({plus + minus + 2 * pairs} for plus, minus, pairs in segment.counts)
@@ -113,7 +113,7 @@ def _missed_between(segment: Segment, found: Sequence[Located]) -> bool:
     return not outside & last
 
 
-def _others_outside(engine: Engine, event: Located) -> tuple[range, int, bool] | None:
+def _count_outside(engine: Engine, event: Located) -> tuple[range, int, bool] | None:
     """Count the multipliers at a special point: critical ones, and others that may be outside the circle.
 
     The distance of the critical multipliers from the circle, zero in theory, measures how accurate the others are.
@@ -209,16 +209,20 @@ def _sign_unaccounted(segment: Segment, found: list[Located], stop: int) -> bool
         return False
     # an end may itself be singular (a stick of duration zero), its sign rounding: compare points beside the ends
     reach = 1.0 if stop == len(found) else found[stop].position
-    aside = segment.engine.settings.aside
-    beside = segment.several([share * reach for share in (aside, 1.0 - aside)])
-    if beside[0] is not None and beside[1] is not None and not beside[0].sign * beside[1].sign < 0.0:
+    inset = segment.engine.settings.aside
+    inner_points = segment.several([share * reach for share in (inset, 1.0 - inset)])
+    if (
+        inner_points[0] is not None
+        and inner_points[1] is not None
+        and not inner_points[0].sign * inner_points[1].sign < 0.0
+    ):
         return False
     return certain(segment.engine, segment.a) and certain(segment.engine, last)
 
 
 # ------------------------------------------------------------------ the determinant
 @lru_cache(maxsize=64)
-def _side(n: int) -> np.ndarray:
+def _random_vector(n: int) -> np.ndarray:
     """Return a fixed random vector, shape (n,)."""
     return np.random.default_rng(7).standard_normal(n)
 
@@ -226,7 +230,7 @@ def _side(n: int) -> np.ndarray:
 def singular(engine: Engine, point: Solved) -> bool:
     """Whether [[F_u, F_p], [tangent]] is singular: nearer to a singular matrix than `Settings.resolution`, or than the noise of the equations."""
     engine.residual(point.u, point.p)
-    side = np.append(engine.row_sizes * _side(engine.n), 0.0)
+    side = np.append(engine.row_sizes * _random_vector(engine.n), 0.0)
     image = engine.apply_inverse(engine.weights * point.tangent, side)
     near = max(engine.settings.resolution, LOCATING.noisy * engine.noise)
     return not (np.isfinite(image).all() and engine.norm(image) < 1.0 / near)

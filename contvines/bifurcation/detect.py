@@ -63,24 +63,24 @@ class Detector(SegmentSearch):
         extra = len(wide) - len(chunk)
         if extra:
             scanned = self.scan(wide)
-        meets, lands = self._meetings_and_landings(wide, scanned)
-        if scanned.quiet and not (self.own or meets.any() or lands.any()):
+        meetings, landings = self._meetings_and_landings(wide, scanned)
+        if scanned.quiet and not (self.own or meetings.any() or landings.any()):
             return []
         lengths, observed = scanned.lengths, evidence(engine, wide, self.own, scanned)
         sides, outside = filled(observed.sides), observed.outside
         borders = (outside[1:] != outside[:-1]) & (outside[1:] == real)
-        differs = (sides[1:] != sides[:-1]).any(axis=1) | borders | meets
+        differs = (sides[1:] != sides[:-1]).any(axis=1) | borders | meetings
         columns, inside = suspicious(observed, scanned)
         smallest = observed.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(observed, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
-        inside[meets] = (
+        inside[meetings] = (
             False  # a branch that returns to a symmetry's fixed space is marginal there; it is not split
         )
-        apart = (scanned.reached > 0.0) & (not many) & ~meets
-        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meets
-        searched = differs | sharp | apart | inside.any(axis=1)
-        movable = lands[extra:] if chunk.status == Status.RUNNING else lands[extra:-1]
+        may_reach = (scanned.reached > 0.0) & (not many) & ~meetings
+        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meetings
+        searched = differs | sharp | may_reach | inside.any(axis=1)
+        movable = landings[extra:] if chunk.status == Status.RUNNING else landings[extra:-1]
         landed = int(movable.argmax()) if movable.any() else None
         events: list[Located] = []
         for i in np.flatnonzero(searched[extra:][:landed]).tolist():
@@ -88,7 +88,7 @@ class Detector(SegmentSearch):
             one, other = (chunk.solved(i + j, float(sides[k + j, 1])) for j in (0, 1))
             segment = Segment(engine, one, other)
             split = self.inside(segment, real, columns[inside[k]].tolist()) if inside[k].any() else None
-            if split is None and apart[k]:
+            if split is None and may_reach[k]:
                 split = self.halved(segment, real, _neighbours(wide, lengths, k))
             if many and sharp[k]:
                 found = self._by_eigenvalues(segment, real)
@@ -223,16 +223,16 @@ class Detector(SegmentSearch):
         there as at any branch point. The nearer a point, the more rounding mixes the other branch into its tangent, so that its evidence is
         useless; the step is repeated with another length.
         """
-        meets, lands = (np.zeros(len(scanned.lengths), dtype=bool) for _ in range(2))
+        meetings, landings = (np.zeros(len(scanned.lengths), dtype=bool) for _ in range(2))
         for test, size, turn in zip(self.symmetries, scanned.sizes, scanned.turns):
             far = size > self.engine.settings.symmetric
-            meets |= far[1:] & far[:-1] & (turn < 0.0)
-            for i in np.flatnonzero((turn < 0.0) & ~meets).tolist() if self.engine.adaptive else ():
+            meetings |= far[1:] & far[:-1] & (turn < 0.0)
+            for i in np.flatnonzero((turn < 0.0) & ~meetings).tolist() if self.engine.adaptive else ():
                 pair = slice(i, i + 2)
                 parts = test.part(chunk.points[pair], chunk.values[pair])
-                meets[i] = turns_round(test, parts, np.inf, float(chunk.corrections[pair].max()))
-            lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < LANDS * size[:-1])
-        return meets, lands
+                meetings[i] = turns_round(test, parts, np.inf, float(chunk.corrections[pair].max()))
+            landings |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < LANDS * size[:-1])
+        return meetings, landings
 
     def _by_eigenvalues(self, segment: Segment, real: bool) -> list[Located]:
         """Return the special points of a segment of a problem with many unknowns, found from its eigenvalues."""
@@ -260,8 +260,8 @@ class Detector(SegmentSearch):
         engine = self.engine
         for k, event in enumerate(events):
             bound = min(max(event.point.p, engine.lower), engine.upper)
-            known = max(event.error, engine.settings.rounding * engine.parameter_unit(bound))
-            if abs(event.point.p - bound) <= known:
+            error = max(event.error, engine.settings.rounding * engine.parameter_unit(bound))
+            if abs(event.point.p - bound) <= error:
                 continue
             root = locate(Segment(engine, segment.a, event.point), lambda point, bound=bound: point.p - bound)
             if root is not None:

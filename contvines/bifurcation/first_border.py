@@ -68,12 +68,12 @@ def border_of(segment: Segment, real: bool) -> tuple[Located | None, Solved | No
         if own is not None and engine.smallest_margin(own.point.row) >= MARGIN:
             root = own
     elif len(falling) > 1:
-        passing = _passing(segment, root, falling)
-        if len(passing) < len(falling):
-            again = first_zero(segment, passing, real)
-            if again is not None and engine.margins(again.point.row)[falling].min() >= MARGIN:
-                root, falling = again, passing
-    index = _which(engine, engine.margins(root.point.row), falling)
+        still_negative = _negative_behind(segment, root, falling)
+        if len(still_negative) < len(falling):
+            other_root = first_zero(segment, still_negative, real)
+            if other_root is not None and engine.margins(other_root.point.row)[falling].min() >= MARGIN:
+                root, falling = other_root, still_negative
+    index = _vanishing_margin(engine, engine.margins(root.point.row), falling)
     point, before = one_sided(segment, root)
     found = Located(
         root.position,
@@ -103,21 +103,21 @@ def first_zero(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root |
     return root._replace(error=abs(margin(root.point) / fall * (ahead.p - root.point.p)))
 
 
-def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray[np.intp]:
+def _negative_behind(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return those of the margins `falling` (indices) that are negative just behind a border.
 
     If a cycle repeats itself at the border, for example where a stick vanishes in every other round, the margins of the other
     rounds touch zero there and become positive again. They may be negative at the end of the segment for other reasons.
     """
-    here = segment.engine.margins(root.point.row)[falling]
+    at_border = segment.engine.margins(root.point.row)[falling]
     settings = segment.engine.settings
     for step in (settings.aside, 10.0 * settings.aside):
         point = segment.at(root.position + step)
         if point is not None:
-            there = segment.engine.margins(point.row)[falling]
-            passing = falling[(there < MARGIN) & (here <= here.min() + np.sqrt(settings.tied))]
-            if len(passing):
-                return passing
+            behind = segment.engine.margins(point.row)[falling]
+            negative = falling[(behind < MARGIN) & (at_border <= at_border.min() + np.sqrt(settings.tied))]
+            if len(negative):
+                return negative
     return falling
 
 
@@ -133,29 +133,29 @@ def _rounding(segment: Segment, root: Root, index: int, before: Solved | None) -
     flat = np.abs(margins) < SIGNIFICANT * MARGIN_ROUNDING
     flat[index] = True
     flat = flat.nonzero()[0]
-    here, error = _finite(margins[flat]), 0.0
+    at_border, error = _finite(margins[flat]), 0.0
     towards = -1.0 if place * segment.length > sloped else 1.0
     room = place if towards < 0.0 else 1.0 - place
     reach = min(sloped / segment.length, room)
-    aside = before if towards < 0.0 else segment.at(place + reach)
-    if aside is not None and reach < room:
-        error = _scatter(segment, root, index, towards * reach, aside)
-    while reach > 0.0 and (aside := aside or segment.at(place + towards * reach)) is not None:
-        rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - point.p)
+    neighbour = before if towards < 0.0 else segment.at(place + reach)
+    if neighbour is not None and reach < room:
+        error = _scatter(segment, root, index, towards * reach, neighbour)
+    while reach > 0.0 and (neighbour := neighbour or segment.at(place + towards * reach)) is not None:
+        rises, moved = np.abs(_finite(neighbour.row[first:][flat]) - at_border), abs(neighbour.p - point.p)
         significant = rises > SIGNIFICANT * MARGIN_ROUNDING
         if significant.any():
             error = max(error, moved * MARGIN_ROUNDING / float(rises[significant].min()))
-            flat, here = flat[~significant], here[~significant]
+            flat, at_border = flat[~significant], at_border[~significant]
         if not len(flat):
             break
         if reach == room:
             error = max(error, moved)
             break
-        reach, aside = min(30.0 * reach, room), None
+        reach, neighbour = min(30.0 * reach, room), None
     return error
 
 
-def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solved) -> float:
+def _scatter(segment: Segment, root: Root, index: int, reach: float, neighbour: Solved) -> float:
     """Return the error of a border's parameter value from unknowns that have lost digits, as where two events coincide.
 
     These show in the margin's samples close before the border, as scatter around the parabola through the border and two points farther away, on which
@@ -163,15 +163,15 @@ def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solv
     """
     j = 2 * segment.engine.m + index
     points = segment.several([root.position + part * reach for part in (BEND_AT, *SCATTER_AT)])
-    found = [float(point.row[j] - root.point.row[j]) for point in (aside, *points) if point is not None]
-    rises, nearer = np.array(found), np.array(SCATTER_AT)
-    if len(rises) < 2 + len(nearer) or not np.isfinite(rises).all():
+    found = [float(point.row[j] - root.point.row[j]) for point in (neighbour, *points) if point is not None]
+    rises, fractions = np.array(found), np.array(SCATTER_AT)
+    if len(rises) < 2 + len(fractions) or not np.isfinite(rises).all():
         return 0.0
     if not (np.abs(rises[2:]) < 0.5 * abs(rises[0])).all():
         return 0.0
     bend = (rises[1] / BEND_AT - rises[0]) / (BEND_AT - 1.0)
-    apart = float(np.abs(rises[2:] - nearer * (rises[0] + (nearer - 1.0) * bend)).max())
-    return SAFETY * apart / abs(rises[0]) * abs(aside.p - root.point.p)
+    deviation = float(np.abs(rises[2:] - fractions * (rises[0] + (fractions - 1.0) * bend)).max())
+    return SAFETY * deviation / abs(rises[0]) * abs(neighbour.p - root.point.p)
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:
@@ -179,7 +179,7 @@ def _finite(margins: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(margins), margins, 1.0)
 
 
-def _which(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> int:
+def _vanishing_margin(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> int:
     """Return the index of the margin that vanishes.
 
     Several margins vanish at once if, for example, a stick disappears; rounding then decides which one is smallest. Therefore those within
@@ -230,10 +230,12 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
         any_finite = True
         powers = spacing ** np.arange(POLES + 1)
         limit = (powers[:, None] * (EXTRAPOLATION @ polynomials)).tolist()
-        if _apart(limit[0], computed) < LIMITS.agreeing:
+        if _polynomial_difference(limit[0], computed) < LIMITS.agreeing:
             return None
         # change from the spacing before
-        changed = [_apart(one, other) for one, other in zip(limit, last)] or [math.inf] * (POLES + 1)
+        changed = [_polynomial_difference(one, other) for one, other in zip(limit, last)] or [math.inf] * (
+            POLES + 1
+        )
         poles = next((k for k, change in enumerate(changed) if change < CONVERGED[k]), POLES)
         fewer = best is not None and poles < len(best) - 1
         if changed[poles] < CONVERGED[poles] and (changed[poles] < error or fewer):
@@ -242,9 +244,9 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
     if best is None:
         return _by_margin(segment, position, own) if any_finite else None
     if len(best) == 1:
-        return None if _apart(best[0], computed) < LIMITS.agreeing + 10.0 * error else best
-    grown = max(map(abs, best[-1])) / LIMITS.nearest[-1] ** (len(best) - 1)
-    if max(map(abs, computed)) > UNBOUNDED * grown:
+        return None if _polynomial_difference(best[0], computed) < LIMITS.agreeing + 10.0 * error else best
+    growth = max(map(abs, best[-1])) / LIMITS.nearest[-1] ** (len(best) - 1)
+    if max(map(abs, computed)) > UNBOUNDED * growth:
         return best
     return None if _bounded(segment, position, computed) else best
 
@@ -252,18 +254,18 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
 def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
     """Return the polynomial and the limit of its product with the vanishing margin, if this product is constant for all sizes of the margin, else None."""
     engine = segment.engine
-    beside = [rows for _, rows in _before(segment, position, LIMITS.nearest)]
+    before_border = [rows for _, rows in _before(segment, position, LIMITS.nearest)]
     _, before = next(_before(segment, position, LIMITS.distances))
-    if not (beside and engine.problem.n_margins):
+    if not (before_border and engine.problem.n_margins):
         return None
-    rows = np.concatenate([own[None, :], *beside])
+    rows = np.concatenate([own[None, :], *before_border])
     index = int(np.abs(engine.margins(own)).argmin())
     margins, polynomials = engine.margins(rows)[:, index], _characteristic(engine.spectrum(rows))
     products = margins[:, None] * polynomials
-    grown = products[:, 1]
+    second = products[:, 1]
     if not np.isfinite(products).all() or np.abs(polynomials[0]).argmax() != 1:
         return None
-    even = float(np.ptp(grown)) < LIMITS.growing * float(np.abs(grown).max())
+    even = float(np.ptp(second)) < LIMITS.growing * float(np.abs(second).max())
     if not (even and float(np.abs(margins).max()) > SPREAD * float(np.abs(margins).min())):
         return None
     side = np.sign(engine.margins(before[0])[index])
@@ -302,12 +304,12 @@ def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
             continue
         if not np.abs(values).max() <= (1.0 + LIMITS.growing) * largest:
             return False  # the polynomial exceeds the one computed at the border
-        if _apart(CUBIC.dot(values).tolist(), computed) < LIMITS.growing:
+        if _polynomial_difference(CUBIC.dot(values).tolist(), computed) < LIMITS.growing:
             return True
     return False
 
 
-def _apart(one: list[float], other: list[float]) -> float:
+def _polynomial_difference(one: list[float], other: list[float]) -> float:
     """Return the largest difference of two polynomials, shape (m + 1,), relative to their largest coefficient; inf if one is not finite."""
     if not all(map(math.isfinite, one + other)):
         return math.inf

@@ -261,7 +261,7 @@ def number_of(kind: Kind, role: str, point: Point) -> float:
         return math.nan
     number = found.item() if isinstance(found, np.ndarray | np.generic) and np.size(found) == 1 else found
     if isinstance(number, bool) or not isinstance(number, numbers.Real):
-        raise _no_answer(kind, role, found, point, "a real number")
+        raise _wrong_type(kind, role, found, point, "a real number")
     return float(number)
 
 
@@ -279,7 +279,7 @@ def verified(kind: Kind, point: Point) -> bool:
         return kind.verify(point)
     found = _answer(kind, "verify", point)
     if not isinstance(found, bool | np.bool_):
-        raise _no_answer(kind, "verify", found, point, "True or False")
+        raise _wrong_type(kind, "verify", found, point, "True or False")
     return bool(found)
 
 
@@ -301,7 +301,7 @@ def classified(kind: Kind, point: PointOnBranch) -> Classified:
         assert side in SIDES and (coefficient is None or isinstance(coefficient, numbers.Real))
     except (AssertionError, TypeError, ValueError):
         wanted = '(criticality, coefficient): "supercritical", "subcritical" or None, and a number or None'
-        raise _no_answer(kind, "classify", found, point, wanted) from None
+        raise _wrong_type(kind, "classify", found, point, wanted) from None
     return Classified(side, None if coefficient is None else float(coefficient))
 
 
@@ -312,11 +312,11 @@ def _answer(kind: Kind, role: str, point: Point) -> Any:
     except Exception as error:
         if role in ("test", "locus") and isinstance(error, ArithmeticError | np.linalg.LinAlgError):
             raise
-        why = f"{type(error).__name__}: {error}"
-        raise ValueError(f"kind {kind.name}: its {role} fails at {_place(point)}: {why}") from error
+        reason = f"{type(error).__name__}: {error}"
+        raise ValueError(f"kind {kind.name}: its {role} fails at {_place(point)}: {reason}") from error
 
 
-def _no_answer(kind: Kind, role: str, found: object, point: Point, wanted: str) -> ValueError:
+def _wrong_type(kind: Kind, role: str, found: object, point: Point, wanted: str) -> ValueError:
     return ValueError(f"kind {kind.name}: its {role} returns {found!r} at {_place(point)}; expected {wanted}")
 
 

@@ -330,8 +330,8 @@ def locate_singular(
     best = roots[0][1]
     if len(roots) > 1 and engine.problem.scales is not None:
         # rounding dominates in all windows, and the smallest of their error estimates is small by chance
-        apart = abs(roots[1][1].point.p - best.point.p)
-        return best._replace(error=2.0 * max(best.error, roots[1][1].error, apart))
+        disagreement = abs(roots[1][1].point.p - best.point.p)
+        return best._replace(error=2.0 * max(best.error, roots[1][1].error, disagreement))
     return best
 
 
@@ -366,9 +366,9 @@ def _interpolated(
     if not np.isfinite(values).all():
         return None
     parts = [np.array([getattr(p, name) for p in points]) for name in ("u", "p", "tangent", "row")]
-    both = np.column_stack(parts)
-    known = np.isfinite(both).all(axis=0)
-    f, series = (chebyshev_series(NODES) @ of for of in (values, np.where(known, both, 0.0)))
+    samples = np.column_stack(parts)
+    finite = np.isfinite(samples).all(axis=0)
+    f, series = (chebyshev_series(NODES) @ numbers for numbers in (values, np.where(finite, samples, 0.0)))
     grid = np.linspace(-1.2, 1.2, 49)
     on_grid = chebval(grid, f)
     changes = np.flatnonzero(on_grid[:-1] * on_grid[1:] <= 0.0)
@@ -376,8 +376,8 @@ def _interpolated(
         return None
     i = int(changes[np.argmin(np.abs(grid[changes] + 0.025))])
     x = bracketed_root(lambda t: float(chebval(t, f)), *grid[i : i + 2], *on_grid[i : i + 2])[0]
-    n, here = engine.n, np.where(known, chebval(x, series), np.inf)
-    z, tangent, row = here[: n + 1], here[n + 1 : 2 * n + 2], here[2 * n + 2 :]
+    n, interpolated = engine.n, np.where(finite, chebval(x, series), np.inf)
+    z, tangent, row = interpolated[: n + 1], interpolated[n + 1 : 2 * n + 2], interpolated[2 * n + 2 :]
     u, p = np.ascontiguousarray(z[:n]), float(z[n])
     residual = engine.residual(u, p)
     polished = engine.polish(u, p, segment.border, float(segment.border @ z), segment.direction)

@@ -103,22 +103,27 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
     if engine.problem.doubts(engine.work, ENTRY) is None:
         return 0.0
     right, left = _null_vectors(engine, u, p, tangent)
-    ways = (tangent, right / (engine.norm(right) or math.nan))
+    directions = (tangent, right / (engine.norm(right) or math.nan))
     with np.errstate(all="ignore"):
         engine.residual(u, p)
-        rest = np.array([_image(engine, left, way) for way in ways])
-        bent = np.array([[_slope(engine, u, p, way, left, other) for other in ways] for way in ways])
+        rest = np.array([_image(engine, left, direction) for direction in directions])
+        bent = np.array(
+            [
+                [_slope(engine, u, p, direction, left, other) for other in directions]
+                for direction in directions
+            ]
+        )
         if not (np.isfinite(bent).all() and np.linalg.cond(bent) < LOCATING.bent):
             return 0.0
         step = np.linalg.solve(bent.T, -rest)
-    found = abs(float(step @ [way[-1] for way in ways]))
+    found = abs(float(step @ [direction[-1] for direction in directions]))
     return found if math.isfinite(found) else 0.0
 
 
-def _image(engine: Engine, left: np.ndarray, way: np.ndarray) -> float:
+def _image(engine: Engine, left: np.ndarray, direction: np.ndarray) -> float:
     """Return y (F_u, F_p) v for a direction v, at the point linearised last; `left` is y, `way` is v."""
     work = _linearised(engine)
-    return float(left @ (work.jacobian @ way[:-1] + work.derivative * way[-1]))
+    return float(left @ (work.jacobian @ direction[:-1] + work.derivative * direction[-1]))
 
 
 def _linearised(engine: Engine) -> Linearised:
@@ -128,13 +133,13 @@ def _linearised(engine: Engine) -> Linearised:
 
 
 def _slope(
-    engine: Engine, u: np.ndarray, p: float, way: np.ndarray, left: np.ndarray, vector: np.ndarray
+    engine: Engine, u: np.ndarray, p: float, direction: np.ndarray, left: np.ndarray, vector: np.ndarray
 ) -> float:
     """Return the derivative of y (F_u, F_p) x along a direction of unit length in the metric; `left` is y, `vector` is x."""
     values = []
     offset = engine.settings.offset
     for side in (-offset, offset):
-        engine.residual(u + side * way[:-1], p + side * float(way[-1]))
+        engine.residual(u + side * direction[:-1], p + side * float(direction[-1]))
         values.append(_image(engine, left, vector))
     return (values[1] - values[0]) / (2.0 * offset)
 
@@ -189,10 +194,10 @@ def mesh_error(engine: Engine, special: Special) -> float | None:
         return None
     u, p, tangent = special.u, float(special.value), engine.unit(special.tangent)
     singular = special.kind in SINGULAR
-    here = None if singular else engine.across(u, p, tangent)
-    beside = engine.across(*_moved(u, p, tangent, settings.offset), tangent)
-    coarse = beside if singular else here
-    if coarse is None or beside is None:
+    at_point = None if singular else engine.across(u, p, tangent)
+    nearby = engine.across(*_moved(u, p, tangent, settings.offset), tangent)
+    coarse = nearby if singular else at_point
+    if coarse is None or nearby is None:
         return None
     problem.u0 = coarse.u
     finer = Engine(problem.refined(), engine.within, settings)
@@ -200,8 +205,8 @@ def mesh_error(engine: Engine, special: Special) -> float | None:
     fine = finer.across(problem.halved(coarse.u), coarse.p, direction)
     if fine is None:
         return None
-    first = 0.0 if here is None else _vanishing(engine, special, here.row)
-    second = _vanishing(engine, special, beside.row)
+    first = 0.0 if at_point is None else _vanishing(engine, special, at_point.row)
+    second = _vanishing(engine, special, nearby.row)
     missed = _vanishing(finer, special, fine.row) - (second if singular else first)
     found, along = abs(fine.p - coarse.p), abs(coarse.tangent[-1] / engine.inner(tangent, coarse.tangent))
     if missed:
@@ -209,9 +214,9 @@ def mesh_error(engine: Engine, special: Special) -> float | None:
     return settings.mesh_caution * found if math.isfinite(found) else None
 
 
-def _moved(u: np.ndarray, p: float, tangent: np.ndarray, by: float) -> tuple[np.ndarray, float]:
+def _moved(u: np.ndarray, p: float, tangent: np.ndarray, length: float) -> tuple[np.ndarray, float]:
     """Return the point (u, p) moved along the tangent by a length in the metric."""
-    return u + by * tangent[:-1], p + by * float(tangent[-1])
+    return u + length * tangent[:-1], p + length * float(tangent[-1])
 
 
 def _vanishing(engine: Engine, special: Special, row: np.ndarray) -> float:

@@ -162,27 +162,29 @@ def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.
         modulus = np.where(im == 0.0, np.abs(re), np.hypot(re, im))
         size = np.log(modulus) if kind == "map" else re
         place = np.array([size, re / modulus, im / modulus] if kind == "map" else [size, im])
-        told, pairs = np.isfinite(place).all(axis=0) & (im >= 0.0), im > 0.0
+        finite, pairs = np.isfinite(place).all(axis=0) & (im >= 0.0), im > 0.0
         steps = place[:, 1:, None, :] - place[:, :-1, :, None]
-        gaps = np.where(told[:-1, :, None] & told[1:, None, :], np.sqrt((steps**2).sum(axis=0)), np.inf)
+        gaps = np.where(finite[:-1, :, None] & finite[1:, None, :], np.sqrt((steps**2).sum(axis=0)), np.inf)
         rates = gaps, np.abs(steps[0]), (pairs[:-1, :, None] != pairs[1:, None, :]) * lengths[:, None, None]
         links = [_nearest(gaps, np.array(rates) / lengths[:, None, None], axis) for axis in (2, 1)]
         nothing, found = np.zeros((3, 1, m)), np.zeros(len(lengths), dtype=bool)
         before = np.concatenate([nothing, links[1][1][:, :-1]], axis=1)
         behind = np.concatenate([links[0][1][:, 1:], nothing], axis=1)
         first, last = slice(-1), slice(1, None)
-        for axis, (at, own), one, other, here, there in (
+        for axis, (at, own), one, other, one_side, other_side in (
             (2, links[0], first, last, before, behind),
             (1, links[1], last, first, behind, before),
         ):
             a, b = np.abs(size[one]), np.abs(np.take_along_axis(size[other], at, 1))
-            anyway, towards, born = np.fmax(np.fmax(own, here), np.take_along_axis(there, at[None], 2))
+            anyway, towards, meets_real = np.fmax(
+                np.fmax(own, one_side), np.take_along_axis(other_side, at[None], 2)
+            )
             gap, faster = (
                 gaps.min(axis=axis),
-                LOCATING.faster * lengths[:, None] * np.where(born > 0.0, anyway, towards),
+                LOCATING.faster * lengths[:, None] * np.where(meets_real > 0.0, anyway, towards),
             )
-            sure = pairs[one] & (gap < np.inf) & (np.minimum(a, b) > LOCATING.past)
-            found |= (sure & (np.fmax(gap, faster) >= a + b)).any(axis=1)
+            testable = pairs[one] & (gap < np.inf) & (np.minimum(a, b) > LOCATING.past)
+            found |= (testable & (np.fmax(gap, faster) >= a + b)).any(axis=1)
     return found
 
 

@@ -36,12 +36,12 @@ Split = tuple[float, Solved]
 """A point inside a segment, with its position in [0, 1]."""
 
 
-class _Look(NamedTuple):
+class _Sample(NamedTuple):
     """Points of a segment at some positions, their evidence, and the first point whose evidence differs from that of both ends."""
 
     places: list[float]
     points: list[Solved]
-    seen: Evidence
+    evidence: Evidence
     split: Split | None
 
 
@@ -152,10 +152,14 @@ class SegmentSearch:
         This happens at a border. None if it is not so, or if the border is crossed at the beginning itself.
         """
         engine, place = self.engine, self.engine.settings.close / max(segment.length, TINY)
-        if engine.detection != "map" or not place < 1.0 or not _drowned(engine, segment.a):
+        if engine.detection != "map" or not place < 1.0 or not _hidden_by_rounding(engine, segment.a):
             return None
         start = segment.at(place)
-        if start is None or _drowned(engine, start) or (engine.smallest_margin(start.row) >= MARGIN) != real:
+        if (
+            start is None
+            or _hidden_by_rounding(engine, start)
+            or (engine.smallest_margin(start.row) >= MARGIN) != real
+        ):
             return None
         return place, start
 
@@ -222,16 +226,16 @@ class SegmentSearch:
                 return [border], found + moved(
                     self._at_border(Segment(self.engine, last, border.point)), short, border.position
                 )
-        met = self._meeting(segment)
-        if met is not None:
+        meeting = self._meeting(segment)
+        if meeting is not None:
             # the branch behind a meeting is the mirror image of that before it, and has the same special points again
-            short = met.position - max(settings.aside * met.position, settings.near / segment.length)
+            short = meeting.position - max(settings.aside * meeting.position, settings.near / segment.length)
             if not short > 0.0:
-                return [met], []
+                return [meeting], []
             last = segment.at(short)
             if last is not None:
-                return [met], self.part(segment, segment.a, last, (0.0, short), real, depth)
-        return [event for event in (met, border) if event is not None], None
+                return [meeting], self.part(segment, segment.a, last, (0.0, short), real, depth)
+        return [event for event in (meeting, border) if event is not None], None
 
     def _at_border(self, end: Segment) -> list[Located]:
         """Return the special points on the last, short segment before a border, if counts at its ends differ and are reliable."""
@@ -242,7 +246,7 @@ class SegmentSearch:
             return []
         # counts are unreliable with a multiplier that grows without bound; one on the circle belongs to the border
         unbounded = np.abs(engine.spectrum(end.b.row)).max(initial=0.0) >= LIMITS.unbounded
-        if unbounded or _drowned(engine, end.b) or on_circle(engine, end.b, LIMITS.agreeing):
+        if unbounded or _hidden_by_rounding(engine, end.b) or on_circle(engine, end.b, LIMITS.agreeing):
             return []
         found = self._of_all_kinds(end, [])
         middle = end.at(0.5) if unaccounted(end, found) else None
@@ -303,38 +307,40 @@ class SegmentSearch:
         if not real and (window := self.passed(segment)) is not None:
             return window
         ends = self.evidence_of([segment.a, segment.b])
-        first = look = self._at(segment, PLACES, ends, real)
+        first = sample = self._at(segment, PLACES, ends, real)
         for column in columns:
-            look, low, high, outer = first, 0.0, 1.0, ends.distance(column)
+            sample, low, high, outer = first, 0.0, 1.0, ends.distance(column)
             roof = column == ends.first_margin - 1
             for _ in range(ROOF_ZOOMS if roof else ZOOMS):
-                if look.split is not None or not look.points:
+                if sample.split is not None or not sample.points:
                     break
-                values = np.array([outer[0], *look.seen.distance(column), outer[1]])
-                around = np.array([low, *look.places, high])
+                values = np.array([outer[0], *sample.evidence.distance(column), outer[1]])
+                around = np.array([low, *sample.places, high])
                 k = int(np.nan_to_num(np.abs(values[1:-1]), nan=np.inf).argmin()) + 1
                 three, gaps = values[k - 1 : k + 2], np.diff(around[k - 1 : k + 2])
                 if not (roof or parabola_dips(*(three * np.sign(three[0])), *gaps)):
                     break
                 low, high, outer = around[k - 1], around[k + 1], three[::2]
-                look = self._at(segment, low + (high - low) * PLACES, ends, real)
-            if look.split is not None:
+                sample = self._at(segment, low + (high - low) * PLACES, ends, real)
+            if sample.split is not None:
                 break
-        return look.split
+        return sample.split
 
-    def _at(self, segment: Segment, places: np.ndarray, ends: Evidence, real: bool) -> _Look:
+    def _at(self, segment: Segment, places: np.ndarray, ends: Evidence, real: bool) -> _Sample:
         """Return points of a segment at some positions, their evidence, and the first point whose evidence differs from that of both ends."""
         found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
         if not found:
-            return _Look([], [], ends, None)
+            return _Sample([], [], ends, None)
         points, (one, other) = [point for _, point in found], ends.sides
-        seen = self.evidence_of(points)
-        new = ((seen.sides - one) * (seen.sides - other) * seen.sides * one * other != 0).any(axis=1)
+        observed = self.evidence_of(points)
+        new = ((observed.sides - one) * (observed.sides - other) * observed.sides * one * other != 0).any(
+            axis=1
+        )
         if real and not ends.outside.any():
-            new |= seen.outside
+            new |= observed.outside
         elif not real and ends.outside.all():
-            new |= seen.distances[:, -1] > self.engine.settings.shown
-        return _Look([s for s, _ in found], points, seen, found[new.argmax()] if new.any() else None)
+            new |= observed.distances[:, -1] > self.engine.settings.shown
+        return _Sample([s for s, _ in found], points, observed, found[new.argmax()] if new.any() else None)
 
     def alone(self, segment: Segment, real: bool) -> Split | None:
         """Return the same as `inside` for a segment without neighbouring points.
@@ -342,16 +348,16 @@ class SegmentSearch:
         The middle of the segment is the third point of the parabolas that decide whether to search further.
         """
         ends = self.evidence_of([segment.a, segment.b])
-        look = self._at(segment, np.array([0.5]), ends, real)
-        if look.split is not None:
-            return look.split
-        if look.points:
-            rows = np.array([segment.a.row, look.points[0].row, segment.b.row])
+        sample = self._at(segment, np.array([0.5]), ends, real)
+        if sample.split is not None:
+            return sample.split
+        if sample.points:
+            rows = np.array([segment.a.row, sample.points[0].row, segment.b.row])
             if not self.engine.many and reached(self.engine, rows, np.array([0.5, 0.5])).any():
                 split = self.halved(segment, real)
                 if split is not None:
                     return split
-            (first, last), middle = ends.distances, look.seen.distances[0]
+            (first, last), middle = ends.distances, sample.evidence.distances[0]
             side = np.sign(middle)
             dips = parabola_dips(side * first, side * middle, side * last, 0.5, 0.5)
             if columns := np.flatnonzero(dips[: len(dips) - (not real)]).tolist():
@@ -369,11 +375,12 @@ class SegmentSearch:
         ends = self.evidence_of([segment.a, segment.b])
         sampled, halves = [*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], np.array([0.5])
         for _ in range(HALVINGS):
-            look = self._at(segment, halves, ends, real)
-            if look.split is not None or not look.points:
-                return look.split
+            sample = self._at(segment, halves, ends, real)
+            if sample.split is not None or not sample.points:
+                return sample.split
             sampled = sorted(
-                [*sampled, *((s, point.row) for s, point in zip(look.places, look.points))], key=itemgetter(0)
+                [*sampled, *((s, point.row) for s, point in zip(sample.places, sample.points))],
+                key=itemgetter(0),
             )
             places, rows = np.array([s for s, _ in sampled]), np.array([row for _, row in sampled])
             unsure = reached(self.engine, rows, np.diff(places)) & (places[:-1] >= 0.0) & (places[1:] <= 1.0)
@@ -391,7 +398,7 @@ class SegmentSearch:
         one, other = (engine.margins(end.row) < MARGIN for end in (segment.a, segment.b))
         if not (one.any() and other.any()) or (one & other).any():
             return None
-        begins, ends = (first_zero(segment, np.flatnonzero(which), False) for which in (one, other))
+        begins, ends = (first_zero(segment, np.flatnonzero(negative), False) for negative in (one, other))
         if begins is None or ends is None or not begins.position < ends.position:
             return None
         middle = 0.5 * (begins.position + ends.position)
@@ -430,7 +437,7 @@ def moved(events: Iterable[Located], low: float, high: float) -> list[Located]:
     return [replace(event, position=low + (high - low) * event.position) for event in events]
 
 
-def _drowned(engine: Engine, point: Solved) -> bool:
+def _hidden_by_rounding(engine: Engine, point: Solved) -> bool:
     """Whether a point is at a border where a multiplier is so large that its rounding hides the side of another one near the circle."""
     if abs(engine.smallest_margin(point.row)) >= engine.settings.inside:
         return False

@@ -100,7 +100,7 @@ def null_vectors(
     border = engine.weights * tangent
     settings, found, first = engine.settings, list[np.ndarray](), 0.0
     singular = settings.isolated if isolated else settings.null
-    for random in _sides(min(KERNEL if most is None else most, KERNEL, engine.n), engine.n):
+    for random in _random_vectors(min(KERNEL if most is None else most, KERNEL, engine.n), engine.n):
         side = engine.join(engine.row_sizes * random, 0.0)
         image = engine.apply_inverse(border, side) if found else _evaluated(engine, u, p, border, side)
         size = float(np.abs(image).max())
@@ -118,7 +118,7 @@ def null_vectors(
 
 
 @lru_cache(maxsize=64)
-def _sides(count: int, n: int) -> np.ndarray:
+def _random_vectors(count: int, n: int) -> np.ndarray:
     """Return fixed random vectors, shape (count, n)."""
     return np.random.default_rng(3).standard_normal((count, n))
 
@@ -129,7 +129,7 @@ def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side
     The matrix may by chance be singular to the last bit; it is then evaluated at unknowns shifted by `SHIFTS`.
     """
     image = side
-    for near in _aside(engine, u):
+    for near in _shifted_by_rounding(engine, u):
         engine.residual(near, p)
         image = engine.apply_inverse(border, side)
         if np.isfinite(image).all():
@@ -137,7 +137,7 @@ def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side
     return image
 
 
-def _aside(engine: Engine, u: np.ndarray) -> Iterator[np.ndarray]:
+def _shifted_by_rounding(engine: Engine, u: np.ndarray) -> Iterator[np.ndarray]:
     """Generate the unknowns, then the same shifted by a few roundings."""
     yield u
     for part in SHIFTS:
@@ -210,8 +210,8 @@ def _starts(k: int) -> np.ndarray:
     plain = [np.array(signs, dtype=float) for signs in product((1.0, 0.0, -1.0), repeat=k) if any(signs)]
     plain = [v for v in plain if v[np.flatnonzero(v)[0]] > 0.0]
     more = np.random.default_rng(8).standard_normal((20 * k, k))
-    both = np.vstack([plain, more])
-    return both / np.linalg.norm(both, axis=1, keepdims=True)
+    vectors = np.vstack([plain, more])
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 Exchanged = Callable[[Solved], bool] | None
@@ -267,13 +267,17 @@ class _BranchPoint:
         self, direction: np.ndarray, bend: float = 0.0, exchanged: Exchanged = None
     ) -> Departure | None:
         """Compute the branch in a direction, or None; `bend` is the parameter's curvature, as `Departure.curvature`."""
-        ways = ((LEAST_RATIO, LEAVING.slanted), (LEAST_RATIO, LEAVING.grazing), (0.0, LEAVING.slanted))
+        bounds_tried = (
+            (LEAST_RATIO, LEAVING.slanted),
+            (LEAST_RATIO, LEAVING.grazing),
+            (0.0, LEAVING.slanted),
+        )
         for test in (exchanged, None) if exchanged is not None else (None,):
-            for way in ways:
-                found = self._along(direction, bend, test, *way)
+            for bounds in bounds_tried:
+                found = self._along(direction, bend, test, *bounds)
                 straight = None if found is None else self._straight(found)
                 if straight is not None:
-                    found = self._along(straight, 0.0, test, *way) or found
+                    found = self._along(straight, 0.0, test, *bounds) or found
                 if found is not None:
                     return found
         return None
@@ -287,19 +291,19 @@ class _BranchPoint:
         found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), along)
         if found is None:
             return None
-        there = engine.join(found.u, found.p)
+        solved = engine.join(found.u, found.p)
         # this close to the branch point Newton's method may stop at rounding, off the hyperplane
-        missed = abs(float(border @ (there - guess))) > LARGEST_MISS * abs(amplitude)
-        far = engine.norm(there - self.z) > reach * abs(amplitude)
+        missed = abs(float(border @ (solved - guess))) > LARGEST_MISS * abs(amplitude)
+        far = engine.norm(solved - self.z) > reach * abs(amplitude)
         return None if far or missed else found
 
     def _lined_up(self, point: Solved | None, near: Solved | None, least: float) -> bool:
         """Whether the distances of two points, the second one at half the amplitude, show that they lie on the same branch."""
         if point is None or near is None:
             return False
-        away, beside = (self.engine.join(p.u, p.p) - self.z for p in (point, near))
-        far, close = self.engine.norm(away), self.engine.norm(beside)
-        return least * close < far < 3.5 * close and self.engine.inner(away, beside) > 0.0
+        away, nearby = (self.engine.join(p.u, p.p) - self.z for p in (point, near))
+        far, close = self.engine.norm(away), self.engine.norm(nearby)
+        return least * close < far < 3.5 * close and self.engine.inner(away, nearby) > 0.0
 
     @cached_property
     def _origin(self) -> Solved | None:
@@ -307,7 +311,7 @@ class _BranchPoint:
         border = self.engine.weights * self.tangent
         solved = (
             self.engine.polish(near, self.p, border, float(border @ self.z))
-            for near in _aside(self.engine, self.u)
+            for near in _shifted_by_rounding(self.engine, self.u)
         )
         found = next((point for point in solved if point is not None), None)
         return None if found is None else found._replace(u=np.array(self.u, dtype=float), sign=0.0)

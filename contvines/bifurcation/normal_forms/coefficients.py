@@ -107,33 +107,33 @@ class Forms:
         self.problem, self.p, self.n = problem, float(p), len(u)
         self.flow = problem.spectrum != "map"
         scales = problem.scales
-        known = scales is not None and len(scales.unknowns) == self.n
+        scaled = scales is not None and len(scales.unknowns) == self.n
         self.units = (
-            np.asarray(scales.unknowns, dtype=float) if known and scales is not None else np.ones(self.n)
+            np.asarray(scales.unknowns, dtype=float) if scaled and scales is not None else np.ones(self.n)
         )
         self.rate = float(scales.rate) if scales is not None and self.flow else 1.0
         self._twice = np.tile(self.units, 2)
-        self._plain = not known and self.rate == 1.0
+        self._plain = not scaled and self.rate == 1.0
         self.u = np.array(u, dtype=float) / self.units
         self.reach = max(float(np.sqrt(np.mean(self.u**2))), 1.0)
         self.work = problem.workspace()
-        here = self._jacobian(problem, self.work, self.u)
-        if here is None:
+        jacobian = self._jacobian(problem, self.work, self.u)
+        if jacobian is None:
             raise ValueError("the equations cannot be evaluated here")
-        self.J = here
+        self.J = jacobian
         if self.flow:
             self.K = -np.eye(self.n)
             self.open, self.open_work, self.whole = problem, self.work, self.u
         else:
-            here = self.u * self.units
-            problem.kernels.linearise(problem.data, here, self.p, self.work)
+            jacobian = self.u * self.units
+            problem.kernels.linearise(problem.data, jacobian, self.p, self.work)
             kernels = problem.kernels
             assert kernels.flip is not None and kernels.matrix is not None
             kernels.flip(problem.data, self.work, -1.0)
             self.K = 0.5 * (self.J - self._in_units(kernels.matrix(problem.data, self.work)))
-            embedding = problem.offspring(problem.flip_kind, here, self.p, np.zeros(self.n + 1), -1.0 + 0.0j)[
-                0
-            ]
+            embedding = problem.offspring(
+                problem.flip_kind, jacobian, self.p, np.zeros(self.n + 1), -1.0 + 0.0j
+            )[0]
             self.open = embedding.problem
             self.open_work = self.open.workspace()
             self.whole = np.array(embedding.u, dtype=float) / self._twice
@@ -159,8 +159,8 @@ class Forms:
     def _jacobian(self, problem: Problem, work: object, u: np.ndarray) -> np.ndarray | None:
         """Return the Jacobian of a problem at u, in units; None if the equations cannot be evaluated."""
         kernels, data = problem.kernels, problem.data
-        here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
-        if not math.isfinite(kernels.linearise(data, here, self.p, work)):
+        unknowns = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
+        if not math.isfinite(kernels.linearise(data, unknowns, self.p, work)):
             return None
         assert kernels.matrix is not None
         return self._in_units(kernels.matrix(data, work))
@@ -183,8 +183,8 @@ class Forms:
         """Return the second half of a perturbation of two periods that continues with multiplier one."""
         if not x.any():
             return np.zeros(self.n)
-        here, tangent = self.u * self.units, np.append(x * self.units, 0.0)
-        embedding = self.problem.offspring(self.problem.flip_kind, here, self.p, tangent, -1.0 + 0.0j)[0]
+        unknowns, tangent = self.u * self.units, np.append(x * self.units, 0.0)
+        embedding = self.problem.offspring(self.problem.flip_kind, unknowns, self.p, tangent, -1.0 + 0.0j)[0]
         return np.asarray(embedding.tangent, dtype=float)[self.n : 2 * self.n] / self.units
 
     def line(self, x: np.ndarray, factor: complex) -> Line:
@@ -212,10 +212,10 @@ class Forms:
         """Return the Jacobians of one period's rows at points in the unknowns of two periods; None if one cannot be evaluated."""
         found = []
         for u in points:
-            here = self._jacobian(self.open, self.open_work, u)
-            if here is None:
+            jacobian = self._jacobian(self.open, self.open_work, u)
+            if jacobian is None:
                 return None
-            found.append(here[: self.n])
+            found.append(jacobian[: self.n])
         return np.array(found)
 
     # ------------------------------------------------------------------ one real critical direction
@@ -238,17 +238,17 @@ class Forms:
         second = self._solve(self.closed_by(factor), -(self.K @ first))
         return np.column_stack([first, second - (first @ second) / (first @ first) * first])
 
-    def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+    def rests(self, points: np.ndarray, following: np.ndarray | None) -> np.ndarray:
         """Return ``rest`` at k displacements, shape (k, N)."""
-        after = [None] * len(here) if following is None else following
-        return np.array([self.rest(x, y) for x, y in zip(here, after, strict=True)])
+        after = [None] * len(points) if following is None else following
+        return np.array([self.rest(x, y) for x, y in zip(points, after, strict=True)])
 
-    def rest(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+    def rest(self, point: np.ndarray, following: np.ndarray | None) -> np.ndarray:
         """Return the residual of one period at displacement `here`, if the next period starts at displacement `following`; F for a flow.
 
         NaN if the equations cannot be evaluated.
         """
-        moved = self.whole + (here if following is None else np.append(here, self._carrier @ following))
+        moved = self.whole + (point if following is None else np.append(point, self._carrier @ following))
         moved, rows = moved * self._units_of(len(moved)), self.rate * self.units
         if isinstance(self.open, Evaluable):  # residuals without derivatives
             with np.errstate(all="ignore"):
@@ -402,6 +402,6 @@ class ReturnForms(Forms):
         found = self.returns.varied(points)[1]
         return found if np.isfinite(found).all() else None
 
-    def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+    def rests(self, points: np.ndarray, following: np.ndarray | None) -> np.ndarray:
         assert following is not None
-        return self.returns(here) - following
+        return self.returns(points) - following

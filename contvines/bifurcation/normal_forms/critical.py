@@ -87,9 +87,9 @@ def _normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, flo
     if kind in ("zero-hopf", "fold-neimark-sacker"):
         return _fold_and_pair(forms, pairs[0])
     if kind in ("flip-neimark-sacker", "symmetry-breaking-neimark-sacker"):
-        return _amplitudes(forms, [-1.0, *_both(forms, pairs[0])])
+        return _amplitudes(forms, [-1.0, *_pair_on_boundary(forms, pairs[0])])
     if kind in ("double-hopf", "double-neimark-sacker") and len(pairs) > 1:
-        return _amplitudes(forms, [*_both(forms, pairs[0]), *_both(forms, pairs[1])])
+        return _amplitudes(forms, [*_pair_on_boundary(forms, pairs[0]), *_pair_on_boundary(forms, pairs[1])])
     return {}
 
 
@@ -98,7 +98,7 @@ def _on_boundary(forms: Forms, value: complex) -> complex:
     return 1j * abs(value.imag) if forms.flow else value / abs(value)
 
 
-def _both(forms: Forms, value: complex) -> list[complex]:
+def _pair_on_boundary(forms: Forms, value: complex) -> list[complex]:
     """Return the pair of a critical value, exactly on the circle or the axis."""
     value = _on_boundary(forms, value)
     return [value, value.conjugate()]
@@ -216,7 +216,7 @@ def _degenerate_pair(forms: Forms, value: complex) -> dict[str, float]:
         first, second = first / own, second / own
         return {"d": first.real, "d2": second.real + 0.5 * first.imag**2}
 
-    return _simple(forms, _both(forms, value), [(0, (2, 1)), (0, (3, 2))], 5, wanted)
+    return _simple(forms, _pair_on_boundary(forms, value), [(0, (2, 1)), (0, (3, 2))], 5, wanted)
 
 
 def _fold_flip(forms: Forms) -> dict[str, float]:
@@ -248,7 +248,7 @@ def _fold_and_pair(forms: Forms, value: complex) -> dict[str, float]:
             found["e"] = bent.real
         return found
 
-    return _simple(forms, [0.0 if forms.flow else 1.0, *_both(forms, value)], stay, 3, wanted)
+    return _simple(forms, [0.0 if forms.flow else 1.0, *_pair_on_boundary(forms, value)], stay, 3, wanted)
 
 
 def _amplitudes(forms: Forms, values: list[complex]) -> dict[str, float]:

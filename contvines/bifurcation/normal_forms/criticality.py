@@ -126,7 +126,7 @@ def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float |
     )
 
 
-def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
+def _neighbours(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
     """Return the points of the branch at +step, -step, +step/2 and -step/2; None if one of them cannot be solved."""
     length = CHORD * step
     z, along = engine.join(point.u, point.p), length * point.tangent
@@ -155,14 +155,14 @@ def _converged(
     """
     best, least, step = None, np.inf, NORMAL_FORMS.step
     while step > engine.settings.resolution:
-        ends = _beside(engine, point, step)
+        ends = _neighbours(engine, point, step)
         if ends is not None:
             far, near = estimate(ends[0], ends[1], step), estimate(ends[2], ends[3], 0.5 * step)
             value = (4.0 * near - far) / 3.0
-            apart = abs((near - far) / value) if value else np.inf
-            if np.isfinite(value) and (best is None or apart < least):
-                best, least = value, apart
-            if apart <= NORMAL_FORMS.digits:
+            change = abs((near - far) / value) if value else np.inf
+            if np.isfinite(value) and (best is None or change < least):
+                best, least = value, change
+            if change <= NORMAL_FORMS.digits:
                 break
         step *= STEP_RATIO
     return best

@@ -137,16 +137,16 @@ class Reduction:
     # ------------------------------------------------------------------ residual of the homological equations
     def _rest(self, w: np.ndarray) -> np.ndarray:
         """Return the residual of the homological equations with the current H and N at points w, shape (n, N)."""
-        here, drift = np.real(values_of(self.H, w)), values_of(self.N, w)
+        points, drift = np.real(values_of(self.H, w)), values_of(self.N, w)
         if not self.forms.flow:
-            return self.forms.rests(here, np.real(values_of(self.H, drift)))
-        rate = np.zeros(here.shape, dtype=complex)
+            return self.forms.rests(points, np.real(values_of(self.H, drift)))
+        rate = np.zeros(points.shape, dtype=complex)
         for j in range(self.m):
-            slopes = {_less(a, j): a[j] * c for a, c in self.H.items() if a[j]}
+            slopes = {_lowered(a, j): a[j] * c for a, c in self.H.items() if a[j]}
             rate += drift[:, j, None] * values_of(slopes, w)
-        return self.forms.rests(here, None) - np.real(rate)
+        return self.forms.rests(points, None) - np.real(rate)
 
-    def _left_over(self, degree: int) -> np.ndarray:
+    def _residual_terms(self, degree: int) -> np.ndarray:
         """Return the Taylor coefficients of this degree of the residual, shape (number of monomials, N)."""
         wanted = monomials(self.m, degree)
         lines = directions(self.m, degree)
@@ -168,7 +168,7 @@ class Reduction:
     # ------------------------------------------------------------------ new terms
     def _balance(self, degree: int) -> None:
         """Compute the terms of H and N of one degree; monomials are solved for one by one if L is diagonal, else together."""
-        wanted, left = monomials(self.m, degree), self._left_over(degree)
+        wanted, left = monomials(self.m, degree), self._residual_terms(degree)
         table = substitution(self.linear, degree, self.forms.flow)
         diagonal = np.abs(table - np.diag(np.diag(table))).max() == 0.0
         groups = [[b] for b in range(len(wanted))] if diagonal else [list(range(len(wanted)))]
@@ -223,7 +223,7 @@ def directions(m: int, degree: int) -> np.ndarray:
     return lines[chosen[:count]]
 
 
-def _less(exponents: Monomial, j: int) -> Monomial:
+def _lowered(exponents: Monomial, j: int) -> Monomial:
     """Return the exponents with the j-th one lowered by one."""
     return tuple(e - (i == j) for i, e in enumerate(exponents))
 

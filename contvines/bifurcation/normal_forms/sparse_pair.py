@@ -59,21 +59,23 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     work, data = problem.workspace(), problem.data
 
     def jacobian(v: np.ndarray) -> sp.csc_array | None:
-        known = math.isfinite(problem.kernels.linearise(data, v * units, p, work))
+        evaluated = math.isfinite(problem.kernels.linearise(data, v * units, p, work))
         assert isinstance(work, SparseWork)
-        return work.matrix if known else None
+        return work.matrix if evaluated else None
 
-    here = u / units
-    base = jacobian(here)
+    point = u / units
+    base = jacobian(point)
     if base is None:
         raise ValueError("the equations cannot be evaluated here")
     base = base.copy()
 
     def changes(v: np.ndarray, vectors: np.ndarray) -> np.ndarray | None:
         """Return (F_u(v) - F_u(point)) times vectors; the difference of the matrices removes large constant entries before they add rounding."""
-        there = jacobian(v)
+        shifted = jacobian(v)
         return (
-            None if there is None else ((there - base) @ (units[:, None] * vectors)) / (rate * units)[:, None]
+            None
+            if shifted is None
+            else ((shifted - base) @ (units[:, None] * vectors)) / (rate * units)[:, None]
         )
 
     matrix = (sp.diags_array(1.0 / (rate * units)) @ base @ sp.diags_array(units)).tocsc()
@@ -81,8 +83,8 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     q = in_phase(q / problem.amplitude(q * units))
     omega = value.imag
     solve = _factors(matrix), _factors(matrix - 2j * omega * sp.eye_array(len(u)))
-    reach = max(float(np.sqrt(np.mean(here**2))), 1.0)
-    return _coefficient(changes, here, (q, w), omega, solve, reach)
+    reach = max(float(np.sqrt(np.mean(point**2))), 1.0)
+    return _coefficient(changes, point, (q, w), omega, solve, reach)
 
 
 def _coefficient(

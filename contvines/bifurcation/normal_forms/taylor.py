@@ -58,15 +58,19 @@ def along_line(
     """
     size = float(np.abs(x).max())
     if size == 0.0:
-        here = jacobians(u[None, :])
-        return None if here is None else Line(np.zeros_like(here[0]), np.zeros_like(here[0]), 0.0, 0.0)
+        jacobian = jacobians(u[None, :])
+        return (
+            None
+            if jacobian is None
+            else Line(np.zeros_like(jacobian[0]), np.zeros_like(jacobian[0]), 0.0, 0.0)
+        )
 
     def samples(radius: float, count: int) -> np.ndarray | None:
         return jacobians(u + radius * chebyshev_nodes(count)[:, None] * x)
 
     def largest() -> float:
-        here = jacobians(u[None, :])
-        return np.inf if here is None else float(np.abs(here).max())
+        jacobian = jacobians(u[None, :])
+        return np.inf if jacobian is None else float(np.abs(jacobian).max())
 
     radius = RADIUS * scale / size
     if rough:
