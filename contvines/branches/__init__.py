@@ -110,8 +110,8 @@ class Ending:
                 return f"meets {self.other} at {self.point}, {at}"
             case Reason.COMES_BACK:
                 return f"comes back to more symmetric solutions at {self.point}, {at}"
-        said = Status[self.reason.name].sentence(parameter, self.value, unit)
-        return f"{said}; {self.text}" if self.text else said
+        reason = Status[self.reason.name].sentence(parameter, self.value, unit)
+        return f"{reason}; {self.text}" if self.text else reason
 
 
 @hinted
@@ -250,11 +250,11 @@ class Branch:
             If the problem has no such measure.
         """
         # results are stored: pictures and surveys need the same measure many times
-        known = vars(self).setdefault("_measured", {})
-        points, values, found = known.get(name, (None, None, None))
+        computed = vars(self).setdefault("_measured", {})
+        points, values, found = computed.get(name, (None, None, None))
         if points is not self.points or values is not self.values:
             found = self.measure_of(name, self.points, self.values)
-            known[name] = self.points, self.values, found
+            computed[name] = self.points, self.values, found
         return np.array(found)
 
     def measure_of(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
@@ -360,18 +360,18 @@ class Branch:
             raise ValueError(
                 f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
             )
-        known = {i: special[label] for i, label in self.marks if special and label in special}
-        return self.problem.prove_branch(self.points, self.values, [i for i, _ in self.marks], within, known)
+        points = {i: special[label] for i, label in self.marks if special and label in special}
+        return self.problem.prove_branch(self.points, self.values, [i for i, _ in self.marks], within, points)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entry of this branch in the JSON of a graph."""
-        about = self.description
+        data = self.description
         return {
             "label": self.label,
-            "word": about.get("word"),
-            "periods": about.get("periods"),
-            "impacts": about.get("impacts"),
-            "symmetric": about.get("symmetric"),
+            "word": data.get("word"),
+            "periods": data.get("periods"),
+            "impacts": data.get("impacts"),
+            "symmetric": data.get("symmetric"),
             "real": bool(self.real),
             "range": list(self.range),
             "points": len(self),

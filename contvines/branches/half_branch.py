@@ -126,10 +126,10 @@ class HalfBranch:
 
     def inserted(self, points: list[tuple[int, Solved]]) -> HalfBranch:
         """Return the half branch with more points (index, point), in increasing order; each is put before the current point of its index."""
-        where = [i for i, _ in points]
+        indices = [i for i, _ in points]
         more = piece_of(self.engine, *(point for _, point in points))
-        whole = Piece(*(np.insert(a, where, b, axis=0) for a, b in zip(self.joined(), more, strict=True)))
-        events = [(i + int(np.searchsorted(where, i, side="right")), e) for i, e in self.events]
+        whole = Piece(*(np.insert(a, indices, b, axis=0) for a, b in zip(self.joined(), more, strict=True)))
+        events = [(i + int(np.searchsorted(indices, i, side="right")), e) for i, e in self.events]
         return replace(self, pieces=[whole], events=events)
 
     def put(self, i: int, point: Solved) -> None:
@@ -140,9 +140,9 @@ class HalfBranch:
 
     def without(self, places: list[int]) -> HalfBranch:
         """Return the half branch without some points and their events."""
-        gone = sorted(set(places))
-        whole = Piece(*(np.delete(array, gone, axis=0) for array in self.joined()))
-        events = [(i - int(np.searchsorted(gone, i)), e) for i, e in self.events if i not in gone]
+        removed = sorted(set(places))
+        whole = Piece(*(np.delete(array, removed, axis=0) for array in self.joined()))
+        events = [(i - int(np.searchsorted(removed, i)), e) for i, e in self.events if i not in removed]
         return replace(self, pieces=[whole], events=events)
 
 
@@ -250,10 +250,10 @@ def stability(
             len(near) > 0 and stable[near[np.abs(near - i).argmin()]]
         )  # unstable if there is no such point
     ahead = stable & ordinary
-    beside = np.zeros(len(stable), dtype=bool)
-    beside[1:] = ahead[:-1]
-    beside[:-1] |= ahead[1:]
-    return np.where(ordinary, stable, beside)
+    by_neighbour = np.zeros(len(stable), dtype=bool)
+    by_neighbour[1:] = ahead[:-1]
+    by_neighbour[:-1] |= ahead[1:]
+    return np.where(ordinary, stable, by_neighbour)
 
 
 def make_branch(
@@ -471,12 +471,12 @@ def _located_again(half: HalfBranch, real: bool) -> bool:
         chunk = packed(ends, Status.RUNNING)
         found = [e for e in detector.look(chunk, detector.scan(chunk), real) if e.role is not Role.PLAIN]
         _adaptive(half.engine).anchor(None)
-        known = [(i, e) for i, e in events if low < i < high]
+        earlier = [(i, e) for i, e in events if low < i < high]
         if not found:  # unresolved marks from rounding on the old mesh
-            known = [(i, e) for i, e in known if e.role is not Role.UNRESOLVED]
-        if [(e.kind, e.role, e.name) for e in found] != [(e.kind, e.role, e.name) for _, e in known]:
+            earlier = [(i, e) for i, e in earlier if e.role is not Role.UNRESOLVED]
+        if [(e.kind, e.role, e.name) for e in found] != [(e.kind, e.role, e.name) for _, e in earlier]:
             return False
-        for (i, event), again in zip(known, found):
-            half.put(i, again.point)
-            half.events.append((i, replace(again, position=event.position)))
+        for (i, event), relocated in zip(earlier, found):
+            half.put(i, relocated.point)
+            half.events.append((i, replace(relocated, position=event.position)))
     return True

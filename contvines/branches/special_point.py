@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
 
-class Later:
+class LazyNumber:
     """A field of a dataclass that is a number or None, and may be set to a function without arguments that computes it at first use.
 
     Normal-form coefficients and simulations of special points take a good part of the time of a diagram, and surveys of many
@@ -118,8 +118,8 @@ class SpecialPoint:
     location_error: float = 0.0
     real: bool = True
     criticality: str | None = None
-    coefficient: Later = Later()
-    replay: Later = Later()
+    coefficient: LazyNumber = LazyNumber()
+    replay: LazyNumber = LazyNumber()
     multipliers_beyond: np.ndarray | None = field(default=None, repr=False)
     mirror: bool = False
     name: str = ""
@@ -133,8 +133,8 @@ class SpecialPoint:
     @property
     def note(self) -> str:
         """Name of the user function, label of the branch that ends here, and remarks, in one text."""
-        met = f"met from {self.met_from}" if self.met_from else ""
-        return "; ".join(filter(None, (self.name, met, *self.remarks)))
+        origin = f"met from {self.met_from}" if self.met_from else ""
+        return "; ".join(filter(None, (self.name, origin, *self.remarks)))
 
     @property
     def attached(self) -> Problem:
@@ -221,8 +221,8 @@ class SpecialPoint:
     def __repr__(self) -> str:
         virtual = "" if self.real else "virtual "
         side = f", {self.criticality}" if self.criticality else ""
-        where = f"{self.parameter} = {self.value:.12g}"
-        return f"SpecialPoint({self.label}: {virtual}{self.kind} on {self.branch} at {where}{side})"
+        position = f"{self.parameter} = {self.value:.12g}"
+        return f"SpecialPoint({self.label}: {virtual}{self.kind} on {self.branch} at {position}{side})"
 
     def _repr_html_(self) -> str:
         from ..graph.table import point_page

@@ -77,11 +77,11 @@ def trace_half(
             return half
         if closer is not start:
             start, first_step = closer, engine.distance(origin, closer)
-    half.first, begun = start.u, len(half)
+    half.first, opening_length = start.u, len(half)
     walk = chunks(engine, start, journal, key, real and engine.problem.n_margins > 0, first_step)
-    wish: Retrace | Finer | None = None
+    request: Retrace | Finer | None = None
     for number in count_from(0):
-        chunk = next(walk) if wish is None else walk.send(wish)
+        chunk = next(walk) if request is None else walk.send(request)
         name = f"{key}/{number}/events"
         coarse, lag = _coarse(engine, chunk)
         if coarse:
@@ -93,7 +93,7 @@ def trace_half(
                 return whole
             half, image = onward
             detector, engine = half.detector, half.engine
-            wish = Finer(engine, image)
+            request = Finer(engine, image)
             continue
         chunk = chunk if lag is None else chunk.cut(lag.count)
         recorded, scanned = journal.recall(name), detector.scan(chunk)
@@ -105,11 +105,11 @@ def trace_half(
             events, detector.parts = unpack(recorded), int(recorded.get("parts", 0))
         if any(_repeats(engine, event) for event in events):
             return _ended(half, chunk)
-        status, count, wish = chunk.status if lag is None else Status.RUNNING, len(chunk), lag
+        status, count, request = chunk.status if lag is None else Status.RUNNING, len(chunk), lag
         if events and events[-1].role in STEP_AFTER:
             part, i = STEP_AFTER[events[-1].role], int(events.pop().position)
             status, count = Status.RUNNING, i + 1
-            wish = Retrace(count, part * _step(engine, chunk, count))
+            request = Retrace(count, part * _step(engine, chunk, count))
         elif events and events[-1].role is Role.LEFT:
             status, count = Status.LEFT_INTERVAL, int(events[-1].position) + 1
             events[-1] = replace(events[-1], role=Role.PLAIN)
@@ -118,22 +118,22 @@ def trace_half(
         elif status == Status.BORDER:
             # the loop met a negative margin whose zero could not be located: drop the last point, which may be virtual
             count -= 1
-        beside = bool(half.events) and half.events[-1][0] == len(half) - 2
-        if engine.adaptive and len(half) > begun and not beside:
+        just_passed = bool(half.events) and half.events[-1][0] == len(half) - 2
+        if engine.adaptive and len(half) > opening_length and not just_passed:
             # replace the last point by the same one on the mesh of the following points
             half.put(len(half) - 1, chunk.solved(0))
         # copied, as the loop reuses the array of rows
         spectrum = chunk.rows[:, : 2 * engine.m].copy()
         whole = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, scanned.smallest)
-        here, total = 1, len(half)  # the first point is the last one of the chunk before
+        begin, total = 1, len(half)  # the first point is the last one of the chunk before
         for event in events:
-            where = max(int(event.position) + 1, here)
-            half.pieces += [whole.part(here, where), piece_of(engine, event.point)]
-            total += where - here
+            end = max(int(event.position) + 1, begin)
+            half.pieces += [whole.part(begin, end), piece_of(engine, event.point)]
+            total += end - begin
             if event.role is not Role.PLAIN:
                 half.events.append((total, event))
-            here, total = where, total + 1
-        half.pieces += [whole.part(here, count)] if count > here else []
+            begin, total = end, total + 1
+        half.pieces += [whole.part(begin, count)] if count > begin else []
         half.status = status
         if notice is not None:
             notice(len(half), half.end)
@@ -260,13 +260,13 @@ def from_border(half: HalfBranch, first: Solved) -> HalfBranch:
     multipliers at the border are replaced by their one-sided limits, as the equations may be singular there.
     """
     engine = half.engine
-    again = [
+    repeated = [
         i
         for i, e in half.events
         if e.kind in ("fold", "branch-point")
         and engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) <= engine.settings.one_place
     ]
-    half = half.without(again)
+    half = half.without(repeated)
     if len(half) < 2:
         return half
     u, p, tangent = half.at(1)

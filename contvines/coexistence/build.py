@@ -13,7 +13,7 @@ from ..continuation.settings import Settings, hinting
 from ..graph import Graph
 from ..graph.automatic import new_run
 from ..graph.builder import finish, leave_waiting, limit_reached, tell_waiting
-from ..graph.run import Left, Run
+from ..graph.run import Run, WorkState
 from ..journal import Journal
 from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
 from ..problems.abilities import Population
@@ -205,7 +205,7 @@ class _Looking:
         self.windows = Windows(run, population, apart, self.effort)
         self.left: dict[str, int] = {}  # by kind of work, number of pieces that the budget did not allow
         run.over = lambda: self.effort.over
-        run.left = lambda: Left(*self.effort.left())
+        run.left = lambda: WorkState(*self.effort.left())
 
     def pieces(self, what: str, things: Sequence[T], least: int = 0) -> Iterator[T]:
         """Yield the pieces of one kind of work while the budget lasts, at least the first `least`; count those left out."""

@@ -142,8 +142,8 @@ class Graph(Resumable):
             return self.special[label]
         if label in self.branches:
             return self.branches[label]
-        known = ", ".join([*self.branches, *self.special]) or "none yet"
-        raise KeyError(f"the graph has no label {label!r}; it has {known}")
+        labels = ", ".join([*self.branches, *self.special]) or "none yet"
+        raise KeyError(f"the graph has no label {label!r}; it has {labels}")
 
     def __contains__(self, label: object) -> bool:
         return label in self.special or label in self.branches
@@ -209,12 +209,12 @@ class Graph(Resumable):
         ValueError
             If there is no such kind.
         """
-        known = {**LABELS, **{name: entry.label for name, entry in self.own_kinds.items()}}
+        labels = {**LABELS, **{name: entry.label for name, entry in self.own_kinds.items()}}
         kind = RENAMED.get(kind, kind)
-        if kind not in known:
-            named = next((name for name, prefix in known.items() if prefix == kind), None)
-            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, known)
-            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(known)}")
+        if kind not in labels:
+            named = next((name for name, prefix in labels.items() if prefix == kind), None)
+            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, labels)
+            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(labels)}")
         return [point for point in self.special.values() if point.kind == kind]
 
     @property

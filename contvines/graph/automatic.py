@@ -88,19 +88,19 @@ def diagram(
         )
     description = problem.describe()
     model = description.get("model") or {"name": description.get("name", type(problem).__name__)}
-    about = dict(model) if isinstance(model, Mapping) else {"name": model}
+    model_data = dict(model) if isinstance(model, Mapping) else {"name": model}
     limits = Limits.of(stop, bounds, problem)
 
-    def begun(kept: Journal, tell: Tell | None) -> tuple[Graph, Callable[[], None]]:
+    def start(stored: Journal, report: Tell | None) -> tuple[Graph, Callable[[], None]]:
         run = new_run(
             problem.parameter,
-            about,
+            model_data,
             within,
             depth,
             virtual,
             user_functions,
-            kept,
-            tell,
+            stored,
+            report,
             settings,
             limits,
             kinds,
@@ -124,7 +124,7 @@ def diagram(
 
         return run.graph, carry_on
 
-    return carried_out(begun, journal, progress, interrupt)
+    return carried_out(start, journal, progress, interrupt)
 
 
 def _ever_a_number(run: Run, kind: Kind) -> bool:
@@ -175,8 +175,8 @@ def new_run(
             **limits.kept(),
         },
     )
-    kept = NullJournal() if journal is None else journal
-    return Run(graph, chosen, kept, depth, virtual, user_functions, progress, limits, looked_for)
+    stored = NullJournal() if journal is None else journal
+    return Run(graph, chosen, stored, depth, virtual, user_functions, progress, limits, looked_for)
 
 
 @hinting
@@ -223,8 +223,8 @@ def switch(
         hint = f"{name!r}, the label of this {type(label).__name__}" if name else "'SB1'"
         raise TypeError(f"switch needs the label of a special point as text, for example {hint}")
     if label not in graph.special:
-        known = ", ".join(graph.special) or "none"
-        raise KeyError(f"the graph has no special point {label!r}; it has {known}")
+        labels = ", ".join(graph.special) or "none"
+        raise KeyError(f"the graph has no special point {label!r}; it has {labels}")
     point = graph.special[label]
     if point.problem is None:
         raise ValueError(without_problem(label, graph.branches[point.branch].description))

@@ -103,8 +103,8 @@ def work(run: Run) -> None:
             crossed = {switch.point for switch in graph.switches}
             for point in graph.special.values():
                 # solutions beyond this border were found, but all were rejected
-                untold = point.kind in BORDERS and point.real and not point.remarks
-                if untold and point.label not in crossed and point.problem is not None:
+                unexplained = point.kind in BORDERS and point.real and not point.remarks
+                if unexplained and point.label not in crossed and point.problem is not None:
                     tell_dead_end(run, point)
         except KeyboardInterrupt:
             take()
@@ -145,11 +145,11 @@ def leave_waiting(run: Run) -> None:
         tell_waiting(run, f"{limit} = {most}")
 
 
-def tell_waiting(run: Run, why: str) -> None:
+def tell_waiting(run: Run, reason: str) -> None:
     """Add a remark to each special point that a waiting branch leaves: the reason why it is not followed."""
     for pending in run.queue:
         if pending.point is not None and not pending.reached:
-            run.remark(pending.point, f"a branch that leaves here is not followed: {why}")
+            run.remark(pending.point, f"a branch that leaves here is not followed: {reason}")
 
 
 def trace_pending(run: Run, pending: Pending) -> None:
@@ -195,17 +195,17 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
         if pending.point is not None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
         return None
-    known = run.register.find(pending.problem, first.u, first.p, real)
-    if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
-        itself = run.engine(known.attached)
-        known = None if parts_further_on(known, itself, engine, first) else known
-    if known is not None:
-        if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
+    match = run.register.find(pending.problem, first.u, first.p, real)
+    if match is not None and pending.kind is Origin.SWITCH and match.label == pending.source:
+        match_engine = run.engine(match.attached)
+        match = None if parts_further_on(match, match_engine, engine, first) else match
+    if match is not None:
+        if pending.kind is Origin.BORDER and pending.point is not None and match.label == pending.source:
             run.remark(pending.point, "the solution found beyond lies on the same branch")
             return None
         if pending.kind in (Origin.BORDER, Origin.REST) and pending.point is not None:
-            pending.point = same_border(run, pending.point, known)
-        run.connect(pending.point, pending.source, known.label, pending.note)
+            pending.point = same_border(run, pending.point, match)
+        run.connect(pending.point, pending.source, match.label, pending.note)
         return None
     return first, real
 
@@ -266,7 +266,7 @@ def followed(
     def notice(points: int, value: float) -> None:
         run.tell(f"{label}: {points} points", value)
 
-    def halves(detector: Detector, first: Solved, known: Container[str]) -> dict[str, HalfBranch]:
+    def halves(detector: Detector, first: Solved, done: Container[str]) -> dict[str, HalfBranch]:
         """Follow the sides of the first point, except those known already; if the first side closes, only that one."""
         if pending.kind is Origin.START and first.tangent[-1] < 0.0:
             first = turned(first)
@@ -279,7 +279,7 @@ def followed(
             starts = {side: at for side, at in sides.items() if at and engine.lower <= at.p <= engine.upper}
         found: dict[str, HalfBranch] = {}
         for side, start in starts.items():
-            if side not in known:
+            if side not in done:
                 place = f"{run.serial}/{side}"
                 found[side] = trace_half(
                     detector, start, run.journal, place, real, pending.first_step, notice, origin, meshes
@@ -356,9 +356,9 @@ def of_no_length(run: Run, half: HalfBranch) -> bool:
         return True
     if length > run.settings.located * unit:
         return False
-    engine, across = half.engine, np.append(np.ptp(whole.points, axis=0), 0.0)
+    engine, extent = half.engine, np.append(np.ptp(whole.points, axis=0), 0.0)
     return bool(
-        whole.smallest.max() <= nowhere or (length <= nowhere * unit and engine.norm(across) <= nowhere)
+        whole.smallest.max() <= nowhere or (length <= nowhere * unit and engine.norm(extent) <= nowhere)
     )
 
 
@@ -373,7 +373,7 @@ def begins_elsewhere(run: Run, half: HalfBranch, pending: Pending) -> bool:
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     """Compute the first regular point of a pending branch; None, with a remark at its special point, if there is none inside the interval."""
     if pending.kind is Origin.SWITCH:
-        _bring_near(engine, pending)
+        _move_nearer(engine, pending)
         first = pending.ahead
         if first is not None and not engine.lower <= first.p <= engine.upper:
             first = pending.back
@@ -414,7 +414,7 @@ def at_special_point(run: Run, engine: Engine, first: Solved) -> bool:
     return on_circle(first) and not any(on_circle(beside(engine, first, side)) for side in (step, -step))
 
 
-def _bring_near(engine: Engine, pending: Pending) -> None:
+def _move_nearer(engine: Engine, pending: Pending) -> None:
     """Move the first points of a departure so near to the special point that they are not behind a border."""
     origin, sides = pending.origin, (pending.ahead, pending.back)
     if origin is None:

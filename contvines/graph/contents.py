@@ -73,12 +73,12 @@ class Attractor:
 
 def sentences(stretches: Sequence[Unresolved], parameter: str) -> list[str]:
     """Return a sentence for each stretch; for branches with many, the first ones and the number of the others."""
-    lines, seen = list[str](), Counter[str]()
+    lines, counts = list[str](), Counter[str]()
     for stretch in stretches:
-        seen[stretch.branch] += 1
-        if seen[stretch.branch] <= MOST:
+        counts[stretch.branch] += 1
+        if counts[stretch.branch] <= MOST:
             lines.append(stretch.sentence(parameter))
-    more = ((branch, count - MOST) for branch, count in seen.items() if count > MOST)
+    more = ((branch, count - MOST) for branch, count in counts.items() if count > MOST)
     return [
         *lines,
         *(
@@ -123,20 +123,20 @@ class Unresolved:
     def sentence(self, parameter: str) -> str:
         """Return the stretch as a sentence."""
         width = number_text(self.high - self.low, 2)
-        where = (
+        place = (
             f"{self.branch} at {parameter} = {number_text(0.5 * (self.low + self.high), 12)}, {width} wide"
         )
         if self.reason == "neighbours":
-            return f"unresolved on {where}: {' and '.join(self.points)} cannot be distinguished"
+            return f"unresolved on {place}: {' and '.join(self.points)} cannot be distinguished"
         if self.reason == "parts":
-            return f"unresolved on {where}: not searched further, as this branch has used up settings.parts; raise it to search further"
+            return f"unresolved on {place}: not searched further, as this branch has used up settings.parts; raise it to search further"
         if self.reason == "determinant":
-            return f"unresolved on {where}: a branch point, or two branches nearer than that"
+            return f"unresolved on {place}: a branch point, or two branches nearer than that"
         counts = (
             f"{sum(numbers[:2]) + 2 * numbers[2]} multiplier{'s' if sum(numbers) != 1 else ''} past the circle"
             for numbers in (self.before, self.after)
         )
-        return f"unresolved on {where}: " + " before, ".join(counts) + " behind"
+        return f"unresolved on {place}: " + " before, ".join(counts) + " behind"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entry in the JSON of a graph."""
@@ -175,9 +175,9 @@ def proved_stretches(graph: Proved, label: str) -> list[tuple[list[int], dict[st
 def proof_text(graph: Proved, label: str) -> str:
     """Return the proved stretches of a branch as text."""
     return ", ".join(
-        f"{low:.6g}..{high:.6g} {'real' if about['real'] else 'virtual'}{STABLE[about['stable']]}"
-        for _, about in proved_stretches(graph, label)
-        for low, high in [about["covered"]]
+        f"{low:.6g}..{high:.6g} {'real' if claim['real'] else 'virtual'}{STABLE[claim['stable']]}"
+        for _, claim in proved_stretches(graph, label)
+        for low, high in [claim["covered"]]
     )
 
 

@@ -60,11 +60,11 @@ def distance(one: np.ndarray, other: np.ndarray, scale: np.ndarray | None = None
     """
     if one.shape != other.shape:
         return float("inf")
-    both = np.array([one - other, other])
+    vectors = np.array([one - other, other])
     if scale is not None and one.size < scale.size:
-        both = both / scale[: one.size]
-    apart, size = np.abs(both).max(axis=1, initial=0.0).tolist()
-    return apart / (1.0 + size)
+        vectors = vectors / scale[: one.size]
+    difference, size = np.abs(vectors).max(axis=1, initial=0.0).tolist()
+    return difference / (1.0 + size)
 
 
 def same_vector(
@@ -112,9 +112,9 @@ def may_be_one(
     """
     if type(point.attached) is not type(problem):
         return True
-    alike = problem.same_motion(u, p, point.attached, point.u)
-    if alike is not None:
-        return alike
+    same = problem.same_motion(u, p, point.attached, point.u)
+    if same is not None:
+        return same
     one, other = problem.canonical(u, p)[1], point.attached.canonical(point.u, point.value)[1]
     scales = problem.scales
     return one.shape != other.shape or same_vector(
@@ -181,13 +181,13 @@ class Register:
 
         A branch that passes the parameter value is interpolated there, solved and compared. `real` selects real or virtual branches; None both.
         """
-        near = [known for known in self.known if real in (None, known.branch.real) and known.reaches(p)]
+        near = [entry for entry in self.known if real in (None, entry.branch.real) and entry.reaches(p)]
         if not near:
             return None
         form = problem.canonical(u, p)
-        for known in near:
-            branch, engine = known.branch, known.engine
-            if form[0] not in known.keys:
+        for entry in near:
+            branch, engine = entry.branch, entry.engine
+            if form[0] not in entry.keys:
                 continue
             limits = {True: engine.settings.same, False: engine.settings.near}
             if any(gap <= limits[solved] for gap, solved in _crossings(branch, engine, form, p, 0.1)):
@@ -213,17 +213,17 @@ def _crossings(
     (key, vector), gaps = form, branch.values - p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
         guess = _at_value(branch, engine, int(i), p)
-        here, near = engine.problem.canonical(guess, p)
-        apart = distance(near, vector, engine.scale) if here == key else None
-        if apart is not None and apart > far:
+        form_key, near = engine.problem.canonical(guess, p)
+        gap = distance(near, vector, engine.scale) if form_key == key else None
+        if gap is not None and gap > far:
             continue
         found = engine.at_value(guess, p)
         if found is not None:
-            here, near = engine.problem.canonical(found.u, p)
-            if here == key:
+            form_key, near = engine.problem.canonical(found.u, p)
+            if form_key == key:
                 yield distance(near, vector, engine.scale), True
-        elif apart is not None:
-            yield apart, False
+        elif gap is not None:
+            yield gap, False
 
 
 def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solved) -> bool:
@@ -271,8 +271,8 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
 
 def is_end(branch: Branch, engine: Engine, i: int, form: Form) -> bool:
     """Whether a solution, given as its canonical form, is point i of a branch, one of its ends."""
-    here = engine.problem.canonical(branch.points[i], float(branch.values[i]))
-    return same_form(here, form, engine.scale, singular(engine.settings.same))
+    end_form = engine.problem.canonical(branch.points[i], float(branch.values[i]))
+    return same_form(end_form, form, engine.scale, singular(engine.settings.same))
 
 
 def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:

@@ -82,23 +82,23 @@ def mark(
             label = run.new_label(run.kind(kind).label)
             fresh.append(marking.special(label, kind, event, index))
         else:
-            known = run.graph.special[label]
-            if known in fresh and abs(known.index - index) <= 1:
+            point = run.graph.special[label]
+            if point in fresh and abs(point.index - index) <= 1:
                 run.remark(label, "two multipliers cross at once")
-                known.index = min(index, known.index)
+                point.index = min(index, point.index)
                 continue
-            if not meets and known.kind not in BORDERS and known.met_from is not None:
+            if not meets and point.kind not in BORDERS and point.met_from is not None:
                 # the point was found first by a less symmetric branch; now it is put on the branch of the more symmetric solutions
                 taken = True
-                fresh.append(marking.special(label, kind, event, index, known))
+                fresh.append(marking.special(label, kind, event, index, point))
                 for other in run.graph.branches.values():
-                    first, final = (_met(ending, label, branch.label) for ending in other.endings)
+                    first, final = (_joined_branch(ending, label, branch.label) for ending in other.endings)
                     other.endings = (first, final)
             else:
-                if known.kind in BORDERS and known.multipliers_beyond is None and label == pending.point:
-                    known.multipliers_beyond = engine.multipliers(event.point.row)
-                if meets or known.branch != branch.label:
-                    run.connect(label, known.branch, branch.label)
+                if point.kind in BORDERS and point.multipliers_beyond is None and label == pending.point:
+                    point.multipliers_beyond = engine.multipliers(event.point.row)
+                if meets or point.branch != branch.label:
+                    run.connect(label, point.branch, branch.label)
         marks.append((index, label))
         if index in (0, last) and event.ends_branch:
             ends[0 if index == 0 else 1] = marking.ending(label, kind, event)
@@ -157,8 +157,8 @@ class _Marking(NamedTuple):
             vectors = null_vectors(engine, point.u, point.p, point.tangent)
             for u in (vector[:-1] for vector in vectors):
                 image = test.image_direction(point.u, u)
-                aside = engine.settings.aside * np.abs(u).max()
-                if np.abs(image + u).max() < (np.abs(image - u).max() if len(vectors) == 1 else aside):
+                tolerance = engine.settings.aside * np.abs(u).max()
+                if np.abs(image + u).max() < (np.abs(image - u).max() if len(vectors) == 1 else tolerance):
                     return test.kind
         return event.kind
 
@@ -190,28 +190,28 @@ class _Marking(NamedTuple):
                     if found is not None and found.label == self.branch.label:
                         other.reached = self.branch.real
                         return other.point
-        form, beside, near = None, [], IDENTITY.unstated * run.settings.same * unit
-        for known in special.values():
-            if known.kind != kind or abs(known.value - point.p) > near or known.problem is None:
+        form, candidates, near = None, [], IDENTITY.unstated * run.settings.same * unit
+        for earlier in special.values():
+            if earlier.kind != kind or abs(earlier.value - point.p) > near or earlier.problem is None:
                 continue
-            if kind == "user" and known.name != event.name:
+            if kind == "user" and earlier.name != event.name:
                 continue
             form = problem.canonical(point.u, point.p) if form is None else form
-            if same_form(form, run.form(known), engine.scale, run.settings.same):
-                return known.label
-            if event.role is Role.MEETING and known.branch != self.branch.label:
-                places = Place(known.value, known.location_error), Place(float(point.p), event.error)
+            if same_form(form, run.form(earlier), engine.scale, run.settings.same):
+                return earlier.label
+            if event.role is Role.MEETING and earlier.branch != self.branch.label:
+                places = Place(earlier.value, earlier.location_error), Place(float(point.p), event.error)
                 if same_value(*places, unit, run.settings.same):
-                    beside.append((abs(known.value - point.p), known.label))
+                    candidates.append((abs(earlier.value - point.p), earlier.label))
         # one point of two problems, whose canonical forms may differ: the nearest of those with the same value within the errors
-        return min(beside)[1] if beside else None
+        return min(candidates)[1] if candidates else None
 
     def special(
-        self, label: str, kind: str, event: Located, index: int, known: SpecialPoint | None = None
+        self, label: str, kind: str, event: Located, index: int, earlier: SpecialPoint | None = None
     ) -> SpecialPoint:
         """Make a special point and add it to the graph.
 
-        `known` is the same point found before from a branch of less symmetric solutions; it is replaced.
+        `earlier` is the same point found before from a branch of less symmetric solutions; it is replaced.
         """
         run, branch, engine, point = self.run, self.branch, self.engine, event.point
         margins, problem = float(engine.smallest_margin(point.row)), engine.problem
@@ -246,24 +246,24 @@ class _Marking(NamedTuple):
         form = classified(run.kind(kind), PointOnBranch(engine, point))
         special.criticality, special.coefficient, remarks = form
         special.remarks = (*special.remarks, *remarks)
-        if known is not None:
-            special.met_from, special.remarks = known.met_from, known.remarks
+        if earlier is not None:
+            special.met_from, special.remarks = earlier.met_from, earlier.remarks
         run.events[label], run.graph.special[label] = event, special
         return special
 
     def ending(self, label: str, kind: str, event: Located) -> Ending:
         """Return the ending of the branch at a special point."""
-        known = self.run.graph.special[label]
-        own = known.branch == self.branch.label
+        point = self.run.graph.special[label]
+        own = point.branch == self.branch.label
         if event.role is Role.MEETING:
             reason = Reason.COMES_BACK if own else Reason.MEETS_SYMMETRIC
         else:
             reason = Reason.REACHES if own else Reason.MEETS
-        found = Ending(reason, known.value, label, None if own else known.branch, kind)
+        found = Ending(reason, point.value, label, None if own else point.branch, kind)
         return replace(found, reason=Reason.STOPS, text=event.name) if event.role is Role.STOP else found
 
 
-def _met(ending: Ending, label: str, owner: str) -> Ending:
+def _joined_branch(ending: Ending, label: str, owner: str) -> Ending:
     """Return an ending with the branch of more symmetric solutions, now known, if it lies at this point."""
     if ending.reason is Reason.COMES_BACK and ending.point == label:
         return replace(ending, reason=Reason.MEETS_SYMMETRIC, other=owner)
@@ -283,8 +283,8 @@ def _errors(engine: Engine, special: SpecialPoint) -> list[float]:
         elif special.margin_index is not None:
             errors.append(problem.touch_error(special))
     if special.kind == "branch-point":
-        where = engine, special.u, special.value, special.tangent
-        errors += [singular_within(*where), 2.0 * missed(*where)]
+        at_point = engine, special.u, special.value, special.tangent
+        errors += [singular_within(*at_point), 2.0 * missed(*at_point)]
     return errors
 
 
@@ -345,18 +345,16 @@ def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, floa
     found = [one for one, _ in stretches]
     groups = [[place] for place in places[:1]]
     for one, other in pairwise(places):
-        apart = max(one.low, other.low) - min(one.high, other.high)
+        gap = max(one.low, other.low) - min(one.high, other.high)
         rounding = LAST_PLACES * float(np.spacing(run.unit(one.low)))
-        if not _may_hide(one, other) or (
-            other.at - one.at > 1 and apart > one.error + other.error + rounding
-        ):
+        if not _may_hide(one, other) or (other.at - one.at > 1 and gap > one.error + other.error + rounding):
             groups.append([other])
             continue
         groups[-1].append(other)
         if isinstance(one.what, SpecialPoint) and isinstance(other.what, SpecialPoint):
             names = one.what.label, other.what.label
             for label, neighbour in (names, names[::-1]):
-                run.remark(label, f"{apart:.1e} from {neighbour}: solutions between the two are not resolved")
+                run.remark(label, f"{gap:.1e} from {neighbour}: solutions between the two are not resolved")
             low, high = sorted((one.low, other.low))
             found.append(Unresolved(branch.label, low, high, one.at, "neighbours", points=names))
     for group in groups:
@@ -365,8 +363,8 @@ def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, floa
             found = [one for one in found if one not in inside]
             low, high = min(one.low for one in inside), max(one.high for one in inside)
             found.append(replace(inside[0], low=low, high=high, after=inside[-1].after))
-        beside = [k for k in (group[0].at - 1, group[-1].at + 1) if 0 <= k < len(branch)]
-        if len(group) > 1 and branch.stable is not None and not branch.stable[beside].any():
+        neighbours = [k for k in (group[0].at - 1, group[-1].at + 1) if 0 <= k < len(branch)]
+        if len(group) > 1 and branch.stable is not None and not branch.stable[neighbours].any():
             branch.stable[group[0].at : group[-1].at + 1] = False
     return found
 

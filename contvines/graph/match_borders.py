@@ -26,28 +26,28 @@ DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
     """Whether a border found on a branch of `problem` is the same as the known one with this label."""
-    known, point = run.graph.special[label], event.point
-    here, there = Place(point.p, event.error), Place(known.value, known.location_error)
-    if not same_value(here, there, run.unit(point.p), run.settings.same):
+    other, point = run.graph.special[label], event.point
+    place, other_place = Place(point.p, event.error), Place(other.value, other.location_error)
+    if not same_value(place, other_place, run.unit(point.p), run.settings.same):
         return False
     # results are stored: a branch that begins at a border is tested twice, before it is kept and when its end is labelled
-    key = id(point.u), id(known)
+    key = id(point.u), id(other)
     if key not in run.compared:
-        run.compared[key] = (point, known, may_be_one(problem, point.u, point.p, known, run.settings.same))
+        run.compared[key] = (point, other, may_be_one(problem, point.u, point.p, other, run.settings.same))
     return run.compared[key][2]
 
 
 def same_border(run: Run, label: str, known: Branch) -> str:
     """Merge a border with that of the known branch beyond it, if both are the same point; return the label that remains."""
     graph = run.graph
-    here = graph.special[label]
+    border = graph.special[label]
     engine = run.engine(known.attached)
     for i, other in known.marks:
         point = graph.special[other]
-        if other == label or point.kind not in BORDERS or not _in_one_place(run, point, here):
+        if other == label or point.kind not in BORDERS or not _in_one_place(run, point, border):
             continue
-        if may_be_one(here.attached, here.u, here.value, point, run.settings.same) or is_end(
-            known, engine, i, run.form(here)
+        if may_be_one(border.attached, border.u, border.value, point, run.settings.same) or is_end(
+            known, engine, i, run.form(border)
         ):
             run.merge(label, other)
             return other
@@ -56,8 +56,8 @@ def same_border(run: Run, label: str, known: Branch) -> str:
 
 def _in_one_place(run: Run, one: SpecialPoint, other: SpecialPoint) -> bool:
     """Whether two special points have the same parameter value within their errors."""
-    here, there = Place(one.value, one.location_error), Place(other.value, other.location_error)
-    return same_value(here, there, run.unit(one.value), run.settings.same)
+    place, other_place = Place(one.value, one.location_error), Place(other.value, other.location_error)
+    return same_value(place, other_place, run.unit(one.value), run.settings.same)
 
 
 def tie_borders(run: Run) -> None:

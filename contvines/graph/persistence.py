@@ -19,7 +19,7 @@ import numpy as np
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import RENAMED, kind_named
 from ..branches import Branch, Ending
-from ..branches.special_point import Later, SpecialPoint
+from ..branches.special_point import LazyNumber, SpecialPoint
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from . import Graph, Switch
@@ -39,9 +39,9 @@ DEEPEST = 60  # largest number of levels of nested values
 _MEMBERS = ("branches", "special", "switches", "proofs", "attractors", "missing", "unresolved")
 
 
-def fields_of(thing: DataclassInstance, *apart: str) -> dict[str, Any]:
-    """Return the fields of a dataclass by name, except those in `apart`."""
-    return {f.name: getattr(thing, f.name) for f in fields(thing) if f.name not in apart}
+def fields_of(entry: DataclassInstance, *omitted: str) -> dict[str, Any]:
+    """Return the fields of a dataclass by name, except those in `omitted`."""
+    return {f.name: getattr(entry, f.name) for f in fields(entry) if f.name not in omitted}
 
 
 def graph_entries(graph: Graph) -> Iterator[Entry]:
@@ -118,9 +118,9 @@ def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
     return Branch(problem=problem, **own)
 
 
-def content_of(thing: DataclassInstance) -> dict[str, Any]:
+def content_of(entry: DataclassInstance) -> dict[str, Any]:
     """Return a branch or special point as arrays and JSON values, without its problem."""
-    content = fields_of(thing, "problem", "own_kind")
+    content = fields_of(entry, "problem", "own_kind")
     if "endings" in content:
         content["endings"] = [ending.to_dict() for ending in content["endings"]]
     return content
@@ -144,10 +144,10 @@ def _problem(description: dict[str, Any], built: dict[str, Any], trust: bool) ->
 
 def same_graph(one: Graph, other: Graph) -> bool:
     """Whether two graphs are equal, bit for bit, apart from their problems."""
-    mine, theirs = list(graph_entries(one)), list(graph_entries(other))
-    return len(mine) == len(theirs) and all(
+    entries, other_entries = list(graph_entries(one)), list(graph_entries(other))
+    return len(entries) == len(other_entries) and all(
         a[:2] == b[:2] and a[2].keys() == b[2].keys() and all(_equal(a[2][k], b[2][k]) for k in a[2])
-        for a, b in zip(mine, theirs)
+        for a, b in zip(entries, other_entries)
     )
 
 
@@ -251,12 +251,12 @@ def check_graph(graph: Graph) -> None:
         _shaped(label, point, u=1, tangent=1, multipliers=1)
     for switch in graph.switches:
         check_fields("a switch", switch)
-        for name, known in (
+        for name, labels in (
             (switch.point, graph.special),
             (switch.source, graph.branches),
             (switch.target, graph.branches),
         ):
-            if name not in known:
+            if name not in labels:
                 raise ValueError(f"a switch names {name!r}, which is missing")
     for entry in graph.unresolved:
         check_fields("an unresolved stretch", entry)
@@ -300,7 +300,7 @@ def check_branch(label: str, branch: Branch) -> None:
         raise ValueError(f"{label}: a mark lies on none of its points")
 
 
-def check_fields(label: str, thing: DataclassInstance) -> None:
+def check_fields(label: str, entry: DataclassInstance) -> None:
     """Check that all fields of a dataclass have the annotated types.
 
     Raises
@@ -308,9 +308,9 @@ def check_fields(label: str, thing: DataclassInstance) -> None:
     ValueError
         If one has not; the message names it.
     """
-    hints = _hints(type(thing))
-    for field in fields(thing):
-        value = getattr(thing, field.name)
+    hints = _hints(type(entry))
+    for field in fields(entry):
+        value = getattr(entry, field.name)
         if not fits(value, hints[field.name]):
             raise ValueError(f"{label}: {field.name} cannot be {_shown(value)}")
 
@@ -339,7 +339,7 @@ def fits(value: object, hint: object) -> bool:
         return any(fits(value, part) for part in parts)
     if kind in (Any, Problem, Kind):  # Problem and Kind are not stored in files
         return _plain(value)
-    if kind is Later:
+    if kind is LazyNumber:
         return value is None or fits(value, float)
     if kind is NoneType or hint is None:
         return value is None
@@ -388,10 +388,10 @@ def _own_label(key: str, label: str) -> None:
         raise ValueError(f"{key}: its label is {label!r}")
 
 
-def _shaped(label: str, thing: DataclassInstance, **dimensions: int) -> None:
+def _shaped(label: str, entry: DataclassInstance, **dimensions: int) -> None:
     """Check that arrays, by field, are numeric and have the given number of dimensions."""
     for name, dimension in dimensions.items():
-        array = getattr(thing, name)
+        array = getattr(entry, name)
         numbers = array.dtype.kind in ("fc" if name == "multipliers" else "fi")
         if array.ndim != dimension or not numbers:
             raise ValueError(f"{label}: {name} has the shape {array.shape} and the type {array.dtype}")

@@ -69,18 +69,18 @@ def subject(graph: Graph, label: str) -> object:
         If the branch has no such point.
     """
     name, _, place = label.partition(":")
-    thing = graph[name]
+    found = graph[name]
     if not place:
-        return thing
-    last = len(thing) - 1 if isinstance(thing, Branch) else -1
+        return found
+    last = len(found) - 1 if isinstance(found, Branch) else -1
     if not (place.isdigit() and int(place) <= last):
         raise ValueError(
             f"{label}: {name} is a single point; leave out :{place}"
             if last < 0
             else f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}"
         )
-    assert isinstance(thing, Branch)
-    return thing.orbit(int(place))
+    assert isinstance(found, Branch)
+    return found.orbit(int(place))
 
 
 def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str, Any]:
@@ -108,16 +108,16 @@ def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str,
     wanted = list(labels) or list(graph.special)
     subjects: dict[str, Subject] = {}
     for label in wanted:
-        thing = subject(graph, label)
-        if not isinstance(thing, Subject):
+        target = subject(graph, label)
+        if not isinstance(target, Subject):
             raise ValueError(
                 f"{label}: its problem offers no proofs; machines of orbits with flights in closed form do"
             )
-        subjects[label] = thing
+        subjects[label] = target
     found = {}
-    for label, thing in subjects.items():
+    for label, target in subjects.items():
         more = {"special": graph.special} if label in graph.branches else {}
-        found[label] = proof = thing.prove(**options, **more)
+        found[label] = proof = target.prove(**options, **more)
         graph.proofs[label] = kept(proof)
     return found
 

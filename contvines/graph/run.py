@@ -72,9 +72,9 @@ class Limits:
         """
         functions, pairs = dict(stop or {}), {}
         for name, pair in (bounds or {}).items():
-            known = problem.measure_names
-            if name not in known:
-                raise ValueError(f"bounds: there is no measure {name!r}; choose from {', '.join(known)}")
+            names = problem.measure_names
+            if name not in names:
+                raise ValueError(f"bounds: there is no measure {name!r}; choose from {', '.join(names)}")
             try:
                 low, high = (
                     float(default if value is None else value)
@@ -170,7 +170,7 @@ class Pending:
 Found = TypeVar("Found")
 
 
-class Left(NamedTuple):
+class WorkState(NamedTuple):
     """State of an atlas's work."""
 
     budget: float
@@ -192,7 +192,7 @@ class Progress(NamedTuple):
     points: int
     value: float
     waiting: int
-    left: Left | None = None
+    left: WorkState | None = None
     """State of an atlas's work; None for a diagram."""
 
     @property
@@ -264,7 +264,7 @@ class Run:
     progress: Callable[[Progress], None] | None
     limits: Limits = NO_LIMITS
     kinds: Sequence[Kind] = KINDS
-    left: Callable[[], Left] | None = None
+    left: Callable[[], WorkState] | None = None
     over: Callable[[], bool] = lambda: False
     narrowest: float = 0.0
     serial: int = 0
@@ -334,53 +334,55 @@ class Run:
         """Add a switch unless these two branches are already connected at this point."""
         if point is None or source is None:
             return
-        for known in self.graph.switches:
-            if known.point == point and {known.source, known.target} == {source, target}:
+        for switch in self.graph.switches:
+            if switch.point == point and {switch.source, switch.target} == {source, target}:
                 return
         self.graph.switches.append(Switch(point, source, target, self.graph.special[point].kind, note))
 
     def form(self, point: SpecialPoint) -> tuple[Hashable, np.ndarray]:
         """Return the canonical form of a special point, computed once."""
-        known = self.forms.get(point.label)
-        if known is None or known[0] is not point:
-            known = self.forms[point.label] = (point, point.attached.canonical(point.u, point.value))
-        return known[1]
+        computed = self.forms.get(point.label)
+        if computed is None or computed[0] is not point:
+            computed = self.forms[point.label] = (point, point.attached.canonical(point.u, point.value))
+        return computed[1]
 
-    def merge(self, label: str, into: str) -> None:
-        """Merge two special points that are the same; the label `into` remains."""
+    def merge(self, label: str, remaining: str) -> None:
+        """Merge two special points that are the same; the label `remaining` remains."""
         graph = self.graph
         for branch in graph.branches.values():
             if any(mark == label for _, mark in branch.marks):
-                branch.marks = tuple((i, into if mark == label else mark) for i, mark in branch.marks)
-                first, last = (self._tied(ending, label, into) for ending in branch.endings)
+                branch.marks = tuple((i, remaining if mark == label else mark) for i, mark in branch.marks)
+                first, last = (self._tied(ending, label, remaining) for ending in branch.endings)
                 branch.endings = (first, last)
             if branch.seed == label:
-                branch.seed = into
+                branch.seed = remaining
         for pending in self.queue:
             if pending.point == label:
-                pending.point = into
-        switches = [replace(s, point=into) if s.point == label else s for s in graph.switches]
+                pending.point = remaining
+        switches = [replace(s, point=remaining) if s.point == label else s for s in graph.switches]
         graph.switches.clear()
         for switch in switches:
             self.connect(switch.point, switch.source, switch.target, switch.note)
         del graph.special[label]
 
-    def _tied(self, ending: Ending, label: str, into: str) -> Ending:
+    def _tied(self, ending: Ending, label: str, remaining: str) -> Ending:
         """Return an ending at a point that has been merged into another one."""
         if ending.point != label:
             return ending
         if ending.reason is Reason.REACHES:
-            return replace(ending, reason=Reason.MEETS, point=into, other=self.graph.special[into].branch)
-        return replace(ending, point=into)
+            return replace(
+                ending, reason=Reason.MEETS, point=remaining, other=self.graph.special[remaining].branch
+            )
+        return replace(ending, point=remaining)
 
-    def attempt(self, label: str, what: str, work: Callable[[], Found], otherwise: Found) -> Found:
+    def attempt(self, label: str, name: str, work: Callable[[], Found], otherwise: Found) -> Found:
         """Return the result of work at a special point; if it fails, add a remark with the error to the point, and return `otherwise`.
 
         Parameters
         ----------
         label : str
             Label of the special point.
-        what : str
+        name : str
             Name of the work, for the remark.
         work : callable
             Without arguments.
@@ -399,7 +401,7 @@ class Run:
             raise
         except Exception as error:
             with OPEN:  # an interrupt during the work may be the cause
-                self.remark(label, f"{what} failed: {type(error).__name__}: {error}")
+                self.remark(label, f"{name} failed: {type(error).__name__}: {error}")
             return otherwise
 
     def remark(self, label: str, sentence: str) -> None:

@@ -59,8 +59,8 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         return
     leaves, leaving = run.kind(point.kind).leaves, _Leaving(run, point, branch, depth)
     event = run.events.get(point.label)
-    met = point.met_from is not None and point.branch == branch.label
-    if met and (event is None or event.role is Role.MEETING):
+    joined = point.met_from is not None and point.branch == branch.label
+    if joined and (event is None or event.role is Role.MEETING):
         run.attempt(point.label, SWITCHING, leaving.root, None)
     elif leaves in ("branch", "doubled"):
         run.attempt(point.label, SWITCHING, leaving.switch, None)
@@ -71,16 +71,16 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 def why_nothing_leaves(graph: Graph, label: str) -> str:
     """Return a sentence why no new branch leaves a special point."""
     point = graph.special[label]
-    known = [
+    connected = [
         end for s in graph.switches if s.point == label for end in (s.source, s.target) if end != point.branch
     ]
     kind = graph.kind(point.kind)
-    if not (kind.leaves or known):
+    if not (kind.leaves or connected):
         return kind.nothing or f"no branch is sought that leaves a point of kind {point.kind}"
-    if kind.nothing and not known:
+    if kind.nothing and not connected:
         return kind.nothing
-    if known:
-        return "the graph has the branches that leave here already: " + ", ".join(dict.fromkeys(known))
+    if connected:
+        return "the graph has the branches that leave here already: " + ", ".join(dict.fromkeys(connected))
     return "; ".join(point.remarks) or "no branch that leaves here was found"
 
 
@@ -109,10 +109,10 @@ class _Leaving:
         if not children:
             run.remark(point.label, run.kind(point.kind).without)
             return
-        here = self._solved()
-        spectrum = engine.spectrum(here.row)
+        solved = self._solved()
+        spectrum = engine.spectrum(solved.row)
         k = self._rank(name, spectrum)
-        speed = crossing_speed(engine, here, name, k) if engine.m else None
+        speed = crossing_speed(engine, solved, name, k) if engine.m else None
         point.mirror = point.kind == "symmetry-breaking"
         for child in children:
             target = run.engine(child.problem)
@@ -135,7 +135,7 @@ class _Leaving:
                 transcritical = abs(departure.slope) > SLANTED * unit * departure.amplitude
                 rise, size = abs(point.tangent[-1]), engine.amplitude(point.tangent)
                 steep = generic and transcritical and rise <= SLANTED * unit * size
-                bend = fold_coefficient(engine, here) if steep else None
+                bend = fold_coefficient(engine, solved) if steep else None
                 turns = rise <= abs(bend or 0.0) * departure.amplitude * size
                 if departure.upright(unit, run.settings.near):
                     run.remark(point.label, VERTICAL)
@@ -174,13 +174,13 @@ class _Leaving:
         if self.depth + 1 > run.depth:
             return
         if self.event is not None:
-            met = [self.detector.symmetries[self.event.index]]
+            broken = [self.detector.symmetries[self.event.index]]
         else:
-            met = [test for test in self.detector.symmetries if self._mirrors(test)]
-        if not met:
+            broken = [test for test in self.detector.symmetries if self._mirrors(test)]
+        if not broken:
             run.remark(point.label, "the problem has no symmetry that this point has")
             return
-        symmetry = met[0].symmetry
+        symmetry = broken[0].symmetry
         if symmetry.root is not None:
             problem, u = symmetry.root(point.u)
             # it may repeat a shorter solution; tested here, as the solved point of singular equations no longer repeats it exactly
@@ -268,15 +268,15 @@ class _Leaving:
         def exchanged(point: Solved) -> bool:
             if not self._beyond_errors(target, point):
                 return True
-            past = int(counts(target, point.row)[0])
-            return (past - others - int(speed * (point.p - self.point.value) < 0.0)) % 2 == 0
+            outside = int(counts(target, point.row)[0])
+            return (outside - others - int(speed * (point.p - self.point.value) < 0.0)) % 2 == 0
 
         return exchanged
 
     def _beyond_errors(self, target: Engine, solved: Solved) -> bool:
         """Whether the parameter of a solution beside the special point differs from that of the point by more than the errors of both."""
-        known = self.point.location_error + rounding_of_parameter(target, solved)
-        return abs(solved.p - self.point.value) > known
+        error = self.point.location_error + rounding_of_parameter(target, solved)
+        return abs(solved.p - self.point.value) > error
 
     def _distinct(self, target: Engine, search: Search, most: float) -> list[Departure]:
         """Return the branches that leave, with first points whose parameter differs from that of the special point by more than the errors.
@@ -284,13 +284,13 @@ class _Leaving:
         Nearer points do not show on which side of the special point the branch lies. The amplitude is doubled up to `most`; if no amplitude is large
         enough, as for upright branches, the branches from the first amplitude are returned.
         """
-        way = self.run.settings.amplitude
-        found = further = search(way)
-        while further and way < most:
+        amplitude = self.run.settings.amplitude
+        found = further = search(amplitude)
+        while further and amplitude < most:
             if all(self._beyond_errors(target, departure.ahead) for departure in further):
                 return further
-            way *= 2.0
-            further = search(way)
+            amplitude *= 2.0
+            further = search(amplitude)
         return found
 
     def _mirrors(self, test: SymmetryTest) -> bool:

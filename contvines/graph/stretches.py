@@ -96,8 +96,8 @@ def highest(parts: Sequence[Stretch]) -> Top | None:
     response may be higher by as much as it falls from the peak to the neighbouring points.
     """
     tops = [top for top in map(at_points, parts) if np.isfinite(top.response)]
-    sure = max((top.response for top in tops), default=-np.inf)
-    refined = [_refined(top) if top.response + _fall(top) >= sure else top for top in tops]
+    certain = max((top.response for top in tops), default=-np.inf)
+    refined = [_refined(top) if top.response + _fall(top) >= certain else top for top in tops]
     return max(refined, key=lambda top: top.response, default=None)
 
 
@@ -215,7 +215,7 @@ def united(intervals: Iterable[tuple[float, float]]) -> list[tuple[float, float]
 
 
 def unseen(
-    open_: Sequence[tuple[float, float]], within: tuple[float, float], seen: Sequence[float]
+    open_: Sequence[tuple[float, float]], within: tuple[float, float], simulated: Sequence[float]
 ) -> list[tuple[float, float]]:
     """Return the parts of gaps that simulation has not covered.
 
@@ -228,13 +228,13 @@ def unseen(
         Gaps.
     within : (float, float)
         The whole interval.
-    seen : sequence of float
+    simulated : sequence of float
         Values at which a motion was simulated.
     """
     near = (within[1] - within[0]) / SIMULATED * (1.0 + MEETING)
     found = []
     for low, high in open_:
-        inside = sorted(p for p in seen if low <= p <= high)
+        inside = sorted(p for p in simulated if low <= p <= high)
         found += [(a, b) for a, b in pairwise([low, *inside, high]) if not inside or b - a > near]
     return found
 
@@ -282,8 +282,8 @@ def default_measure(graph: Graph) -> str:
     Motions without impacts have no velocity B; if no branch has one, the largest |w| is shown.
     """
     for branch in graph.branches.values():
-        known = branch if branch.problem is None else branch.problem
-        names, wanted = list(known.measure_names), known.default_measure
+        source = branch if branch.problem is None else branch.problem
+        names, wanted = list(source.measure_names), source.default_measure
         if not names or (branch.problem is None and not wanted):
             continue
         others = [n for n in names if n not in ("norm", graph.parameter)]
@@ -299,8 +299,8 @@ def undrawn(graph: Graph, x: str, y: str) -> str:
         return ""
     labels = [b.label for b in missing]
     listed = ", ".join(labels) if len(labels) <= 4 else f"{', '.join(labels[:3])} +{len(labels) - 3}"
-    still = all(b.description.get("impacts") == 0 for b in missing)
-    return f"not drawn: {listed} ({'no impacts' if still else f'no {y} there'})"
+    impact_free = all(b.description.get("impacts") == 0 for b in missing)
+    return f"not drawn: {listed} ({'no impacts' if impact_free else f'no {y} there'})"
 
 
 def measured(branch: Branch, name: str) -> np.ndarray:

@@ -36,9 +36,9 @@ def table(graph: Graph, width: int | None = None) -> str:
     width : int, optional
         Characters per line; None for no limit.
     """
-    about = [title(graph), graph.start] if graph.start else [title(graph)]
+    head = [title(graph), graph.start] if graph.start else [title(graph)]
     lines = [
-        *(fitted(line, width) if width else line for line in about),
+        *(fitted(line, width) if width else line for line in head),
         "",
         *branches_table(graph).lines(width),
     ]
@@ -79,9 +79,9 @@ def branches_table(graph: Graph) -> Table:
         inner = [] if branch.stable is None else branch.stable_intervals()
         number = figures_in(graph.within, [low, high, *(end for interval in inner for end in interval)])
         stable = stable_text(branch, number)
-        where = f"{number(low)}..{number(high)}"
+        span = f"{number(low)}..{number(high)}"
         proved = proof_text(graph, branch.label)
-        rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
+        rows.append((branch.label, describe(branch), span, stable, proved, str(len(branch)), ends(branch)))
     head = (
         "branch",
         "what",
@@ -115,9 +115,9 @@ def special_table(graph: Graph, reasons: bool = True) -> Table:
         remarked = [remark for remark in point.remarks if remark != TRANSCRITICAL]
         if reasons and not targets and open_end and remarked:
             targets.append(f"({'; '.join(remarked)})")
-        about = " ".join(filter(None, remarks))
+        notes = " ".join(filter(None, remarks))
         value = number(point.value)
-        rows.append((point.label, point.kind, point.branch, value, about, "; ".join(targets)))
+        rows.append((point.label, point.kind, point.branch, value, notes, "; ".join(targets)))
     return Table(("point", "kind", "on", name, "", "leads to"), rows, ("",))
 
 
@@ -131,30 +131,32 @@ def attractors_table(graph: Graph, most: int | None = None) -> Table:
     low, high = graph.within
     edges = np.concatenate([[low], 0.5 * (values[1:] + values[:-1]), [high]])
     parts = dict(zip(values.tolist(), (np.diff(edges) / (high - low)).tolist(), strict=True))
-    met: dict[tuple[str, str, int], list[Attractor]] = {}
-    for about in graph.attractors:
-        key = (about.branch or "", about.name, about.periods)
-        met.setdefault(key, []).append(about)
+    by_motion: dict[tuple[str, str, int], list[Attractor]] = {}
+    for attractor in graph.attractors:
+        key = (attractor.branch or "", attractor.name, attractor.periods)
+        by_motion.setdefault(key, []).append(attractor)
     rows = []
     number = figures_in(graph.within)
-    shares = {key: sum(a.share * parts[a.value] for a in seen if a.starts) for key, seen in met.items()}
-    listed = list(met) if most is None else sorted(met, key=lambda key: -shares[key])[:most]
+    shares = {
+        key: sum(a.share * parts[a.value] for a in members if a.starts) for key, members in by_motion.items()
+    }
+    listed = list(by_motion) if most is None else sorted(by_motion, key=lambda key: -shares[key])[:most]
     for label, motion, periods in listed:
-        seen, share = met[label, motion, periods], shares[label, motion, periods]
-        span = f"{number(seen[0].value)}..{number(seen[-1].value)}"
-        where = span if len(seen) > 1 else number(seen[0].value)
+        members, share = by_motion[label, motion, periods], shares[label, motion, periods]
+        span = f"{number(members[0].value)}..{number(members[-1].value)}"
+        range_text = span if len(members) > 1 else number(members[0].value)
         rows.append(
             (
                 f"{short_word(motion)} k={periods}" if periods else motion,
                 label,
-                where,
-                str(len(seen)),
+                range_text,
+                str(len(members)),
                 f"{share:.2%}",
-                f"{max(a.share for a in seen):.0%}",
+                f"{max(a.share for a in members):.0%}",
             )
         )
-    if len(listed) < len(met):
-        rows.append((f"and {len(met) - len(listed)} more", *[""] * 5))
+    if len(listed) < len(by_motion):
+        rows.append((f"and {len(by_motion) - len(listed)} more", *[""] * 5))
     return Table(
         ("attractor", "branch", f"met at {name}", "values", "share of starts", "at most"), rows, ("values",)
     )
@@ -192,11 +194,11 @@ def stable_text(branch: Branch, number: Callable[[float], str]) -> str:
 
 def describe(branch: Branch) -> str:
     """Return a branch in short: its motion's word, periods, symmetry, and whether it is virtual."""
-    about = branch.description
+    data = branch.description
     parts = (
-        motion_name(about),
-        f"k={about['periods']}" if "periods" in about else "",
-        "symmetric" if about.get("symmetric") else "",
+        motion_name(data),
+        f"k={data['periods']}" if "periods" in data else "",
+        "symmetric" if data.get("symmetric") else "",
         "" if branch.real else "virtual",
     )
     return " ".join(part for part in parts if part)
@@ -209,8 +211,8 @@ def ends(branch: Branch) -> str:
     at = dict(reversed(branch.marks))
     first, last = (at.get(i, "") for i in (0, len(branch) - 1))
     texts = [
-        label or short_text(short_words(why)) or "?"
-        for label, why in zip((first, last), branch.ended, strict=True)
+        label or short_text(short_words(reason)) or "?"
+        for label, reason in zip((first, last), branch.ended, strict=True)
     ]
     if texts[0] == texts[1] and not first:
         return f"{texts[0]} (both ends)"
@@ -237,8 +239,8 @@ def short_word(word: str, limit: int = 24) -> str:
     power = f"^{(len(word) + len(joint)) // length}" if length < len(word) else ""
     root = word[:length].rstrip()
     if len(root) > limit:
-        shown = re.sub(r"\[[^\]]*\]", "", root)  # modes are no events
-        events = len(shown.split()) if joint else sum(letter.isalpha() for letter in shown)
+        plain = re.sub(r"\[[^\]]*\]", "", root)  # modes are no events
+        events = len(plain.split()) if joint else sum(letter.isalpha() for letter in plain)
         cut = root[: limit - 8]
         root = f"{cut[: cut.rfind(joint)] if joint else cut}... {events} events"
     return f"({root}){power}" if power else root
@@ -250,10 +252,10 @@ def told_apart(words: Iterable[str], limit: int = 24) -> dict[str, str]:
     while True:
         short = {word: short_word(word, most) for word, most in limits.items()}
         times = Counter(short.values())
-        alike = [word for word, most in limits.items() if times[short[word]] > 1 and most < len(word)]
-        if not alike:
+        clashing = [word for word, most in limits.items() if times[short[word]] > 1 and most < len(word)]
+        if not clashing:
             return short
-        limits.update((word, 2 * limits[word]) for word in alike)
+        limits.update((word, 2 * limits[word]) for word in clashing)
 
 
 def short_text(text: str) -> str:
@@ -279,8 +281,8 @@ def short_words(text: str) -> str:
 # ------------------------------------------------------------------ pages for notebooks
 def graph_page(graph: Graph) -> str:
     """Return all tables of a graph as HTML."""
-    about = f"<p>{title(graph)}</p>" + (f"<p>{html.escape(graph.start)}</p>" if graph.start else "")
-    parts = [about, branches_table(graph).html()]
+    head = f"<p>{title(graph)}</p>" + (f"<p>{html.escape(graph.start)}</p>" if graph.start else "")
+    parts = [head, branches_table(graph).html()]
     if graph.special:
         parts.append(special_table(graph).html())
     parts += [f"<p>{html.escape(line)}</p>" for line in sentences(graph.unresolved, graph.parameter)]
@@ -333,25 +335,25 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     """
     width = terminal_width() if width is None else width
     measure = default_measure(graph)
-    met: dict[tuple[str, str], list[Stretch]] = {}
+    groups: dict[tuple[str, str], list[Stretch]] = {}
     for part in stretches(graph):
-        met.setdefault((_word(part.branch.description), _kind(part.branch.description)), []).append(part)
+        groups.setdefault((_word(part.branch.description), _kind(part.branch.description)), []).append(part)
     stable = {
         key: united((float(part.values.min()), float(part.values.max())) for part in parts)
-        for key, parts in met.items()
+        for key, parts in groups.items()
     }
     length = graph.within[1] - graph.within[0]
     lengths = {key: sum(high - low for low, high in spans) for key, spans in stable.items()}
-    found = sorted(met, key=lambda key: -lengths[key])
+    found = sorted(groups, key=lambda key: -lengths[key])
     listed = [key for key in found if lengths[key] >= PART * length][:MOST] or found[:MOST]
     short = told_apart(word for word, _ in listed)
-    known = [end for key in listed for interval in stable[key] for end in interval]
+    interval_ends = [end for key in listed for interval in stable[key] for end in interval]
     number = figures_in(
-        graph.within, known, same=Settings.located * length
+        graph.within, interval_ends, same=Settings.located * length
     )  # equal ends of two branches are one point
     rows = []
     for key in listed:
-        top = max(map(at_points, met[key]), key=lambda top: top.response)
+        top = max(map(at_points, groups[key]), key=lambda top: top.response)
         ends = [f"{number(a)}..{number(b)}" for a, b in stable[key]]
         rows.append(
             (
@@ -380,10 +382,10 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     part = sum(b - a for a, b in open_) / length
     if part >= PART and rows:
         low, high = max(open_, key=lambda gap: gap[1] - gap[0])
-        where = f"{graph.parameter} = {number(low)} to {number(high)} {unit or ''}".rstrip()
+        longest = f"{graph.parameter} = {number(low)} to {number(high)} {unit or ''}".rstrip()
         lines.append(
             fitted(
-                f"no stable motion on a branch in {100.0 * part:.3g} % of the interval, most of it {where}: modulated or chaotic motions, or motions that are not connected to these"
+                f"no stable motion on a branch in {100.0 * part:.3g} % of the interval, most of it {longest}: modulated or chaotic motions, or motions that are not connected to these"
             )
         )
     if brief and graph.attractors:
@@ -392,11 +394,11 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _kind(about: Mapping[str, Any]) -> str:
+def _kind(data: Mapping[str, Any]) -> str:
     """Return the type of a motion in a few words: symmetric, period, without impacts."""
-    periods = int(about.get("periods") or 0)
-    parts = ["symmetric"] if about.get("symmetric") else []
+    periods = int(data.get("periods") or 0)
+    parts = ["symmetric"] if data.get("symmetric") else []
     parts += [f"period {periods}"] if periods > 1 else []
-    if about.get("impacts") == 0:
+    if data.get("impacts") == 0:
         parts.append("no impacts")
     return ", ".join(parts)
