@@ -210,12 +210,8 @@ def _sign_unaccounted(segment: Segment, found: list[Located], stop: int) -> bool
     # an end may itself be singular (a stick of duration zero), its sign rounding: compare points beside the ends
     reach = 1.0 if stop == len(found) else found[stop].position
     inset = segment.engine.settings.aside
-    inner_points = segment.several([share * reach for share in (inset, 1.0 - inset)])
-    if (
-        inner_points[0] is not None
-        and inner_points[1] is not None
-        and not inner_points[0].sign * inner_points[1].sign < 0.0
-    ):
+    inner = segment.several([share * reach for share in (inset, 1.0 - inset)])
+    if inner[0] is not None and inner[1] is not None and not inner[0].sign * inner[1].sign < 0.0:
         return False
     return certain(segment.engine, segment.a) and certain(segment.engine, last)
 

@@ -152,14 +152,10 @@ class SegmentSearch:
         This happens at a border. None if it is not so, or if the border is crossed at the beginning itself.
         """
         engine, place = self.engine, self.engine.settings.close / max(segment.length, TINY)
-        if engine.detection != "map" or not place < 1.0 or not _hidden_by_rounding(engine, segment.a):
+        if engine.detection != "map" or not place < 1.0 or not _hidden(engine, segment.a):
             return None
         start = segment.at(place)
-        if (
-            start is None
-            or _hidden_by_rounding(engine, start)
-            or (engine.smallest_margin(start.row) >= MARGIN) != real
-        ):
+        if start is None or _hidden(engine, start) or (engine.smallest_margin(start.row) >= MARGIN) != real:
             return None
         return place, start
 
@@ -246,7 +242,7 @@ class SegmentSearch:
             return []
         # counts are unreliable with a multiplier that grows without bound; one on the circle belongs to the border
         unbounded = np.abs(engine.spectrum(end.b.row)).max(initial=0.0) >= LIMITS.unbounded
-        if unbounded or _hidden_by_rounding(engine, end.b) or on_circle(engine, end.b, LIMITS.agreeing):
+        if unbounded or _hidden(engine, end.b) or on_circle(engine, end.b, LIMITS.agreeing):
             return []
         found = self._of_all_kinds(end, [])
         middle = end.at(0.5) if unaccounted(end, found) else None
@@ -332,15 +328,13 @@ class SegmentSearch:
         if not found:
             return _Sample([], [], ends, None)
         points, (one, other) = [point for _, point in found], ends.sides
-        observed = self.evidence_of(points)
-        new = ((observed.sides - one) * (observed.sides - other) * observed.sides * one * other != 0).any(
-            axis=1
-        )
+        inside = self.evidence_of(points)
+        new = ((inside.sides - one) * (inside.sides - other) * inside.sides * one * other != 0).any(axis=1)
         if real and not ends.outside.any():
-            new |= observed.outside
+            new |= inside.outside
         elif not real and ends.outside.all():
-            new |= observed.distances[:, -1] > self.engine.settings.shown
-        return _Sample([s for s, _ in found], points, observed, found[new.argmax()] if new.any() else None)
+            new |= inside.distances[:, -1] > self.engine.settings.shown
+        return _Sample([s for s, _ in found], points, inside, found[new.argmax()] if new.any() else None)
 
     def alone(self, segment: Segment, real: bool) -> Split | None:
         """Return the same as `inside` for a segment without neighbouring points.
@@ -437,7 +431,7 @@ def moved(events: Iterable[Located], low: float, high: float) -> list[Located]:
     return [replace(event, position=low + (high - low) * event.position) for event in events]
 
 
-def _hidden_by_rounding(engine: Engine, point: Solved) -> bool:
+def _hidden(engine: Engine, point: Solved) -> bool:
     """Whether a point is at a border where a multiplier is so large that its rounding hides the side of another one near the circle."""
     if abs(engine.smallest_margin(point.row)) >= engine.settings.inside:
         return False

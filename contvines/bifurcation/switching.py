@@ -267,17 +267,13 @@ class _BranchPoint:
         self, direction: np.ndarray, bend: float = 0.0, exchanged: Exchanged = None
     ) -> Departure | None:
         """Compute the branch in a direction, or None; `bend` is the parameter's curvature, as `Departure.curvature`."""
-        bounds_tried = (
-            (LEAST_RATIO, LEAVING.slanted),
-            (LEAST_RATIO, LEAVING.grazing),
-            (0.0, LEAVING.slanted),
-        )
+        trials = ((LEAST_RATIO, LEAVING.slanted), (LEAST_RATIO, LEAVING.grazing), (0.0, LEAVING.slanted))
         for test in (exchanged, None) if exchanged is not None else (None,):
-            for bounds in bounds_tried:
-                found = self._along(direction, bend, test, *bounds)
+            for trial in trials:
+                found = self._along(direction, bend, test, *trial)
                 straight = None if found is None else self._straight(found)
                 if straight is not None:
-                    found = self._along(straight, 0.0, test, *bounds) or found
+                    found = self._along(straight, 0.0, test, *trial) or found
                 if found is not None:
                     return found
         return None

@@ -140,14 +140,14 @@ class Bracket:
         if self.overshot:  # a secant ended just beyond the zero: step back a little
             self.overshot, self.wait = False, 0
             return x1 + SHORT * (x2 - x1)
-        nearest, where = math.inf, 0.5 * (x1 + x2)
+        nearest, position = math.inf, 0.5 * (x1 + x2)
         if self.wait > 0:
             self.wait -= 1
-            return where
+            return position
         for own, side in enumerate(self.sides):
             if side.points < 2 or not abs(side.fb) < abs(side.fa):
                 continue
             step = side.fb * (side.xb - side.xa) / (side.fa - side.fb)
             if abs(step) < nearest and min(x1, x2) < side.xb + step < max(x1, x2):
-                nearest, where, self.aimed = abs(step), side.xb + step, own
-        return where
+                nearest, position, self.aimed = abs(step), side.xb + step, own
+        return position

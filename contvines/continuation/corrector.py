@@ -103,10 +103,10 @@ def extrapolate(
     The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order). With a single point, or a much longer
     step, the extrapolation is linear.
     """
-    here, value, point = tangents[i - 1], float(values[i - 1]), points[i - 1]
+    last_tangent, value, point = tangents[i - 1], float(values[i - 1]), points[i - 1]
     if i >= 2:
-        there = tangents[i - 2]
-        chord, bend = point - points[i - 2], here - there
+        tangent_before = tangents[i - 2]
+        chord, bend = point - points[i - 2], last_tangent - tangent_before
         change = value - float(values[i - 2])
         turn = dot(metric.weights * bend, bend)
         square = dot(metric.weights[:-1] * chord, chord) + metric.of_parameter * change**2
@@ -118,18 +118,18 @@ def extrapolate(
             c = h * (3.0 * share + 2.0 * share * share) / d
             chord *= -c
             chord += point
-            way = a * here
-            way += np.multiply(there, b, out=bend)
-            np.add(chord, way[:-1], out=u)
+            displacement = a * last_tangent
+            displacement += np.multiply(tangent_before, b, out=bend)
+            np.add(chord, displacement[:-1], out=u)
             if metric.moving is not None:
                 # no equation corrects these unknowns: errors grow with the formula above, but not with that of Adams and Bashforth
                 held = metric.moving.held
                 u[held] = point[held] + h * (
-                    (1.0 + 0.5 * share) * here[:-1][held] - 0.5 * share * there[:-1][held]
+                    (1.0 + 0.5 * share) * last_tangent[:-1][held] - 0.5 * share * tangent_before[:-1][held]
                 )
-            return value - c * change + float(way[-1])
-    np.add(point, h * here[:-1], out=u)
-    return value + h * float(here[-1])
+            return value - c * change + float(displacement[-1])
+    np.add(point, h * last_tangent[:-1], out=u)
+    return value + h * float(last_tangent[-1])
 
 
 class Corrector:
@@ -154,11 +154,11 @@ class Corrector:
         work: object,
         metric: Metric,
         noise: float,
-        known: np.ndarray,
+        bracket: np.ndarray,
         scratch: Scratch,
     ) -> None:
         self.kernels, self.data, self.work, self.metric = kernels, data, work, metric
-        self.noise, self.known, self.scratch = noise, known, scratch
+        self.noise, self.bracket, self.scratch = noise, bracket, scratch
 
     def improve(
         self, u: np.ndarray, p: float, sweep: int, residual: float, before: float, tolerance: float
@@ -262,14 +262,14 @@ class Corrector:
             settled = verdict > 0
         if sweeps >= 0:
             kernels.inspect(data, u, p, work, found.rows[i])
-            norm, same, across = orient(tangent, way.along, border, self.metric)
+            norm, same, rise = orient(tangent, way.along, border, self.metric)
             if not math.isfinite(norm):
                 sweeps = -3
             else:
                 if same < 0.0:
-                    norm, across = -norm, -across
+                    norm, rise = -norm, -rise
                 tangent /= norm
-                if across < 0.0:
+                if rise < 0.0:
                     sign = -sign
                 if way.length > 0.0 and distance(u, p, self.scratch.guess, self.metric) > STRAY * way.length:
                     sweeps = -4
@@ -278,14 +278,14 @@ class Corrector:
     def search(self, way: Way, found: Found, aim: Aim) -> int:
         """Find the zero of an aim's test function between a chord's ends, and write its point to the first entry of `found`.
 
-        ``known`` gives tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`, and receives the final bracket.
+        ``bracket`` gives tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`, and receives the final bracket.
 
         Returns
         -------
         int
             `PASSED` if a zero was bracketed, `AT_END` if an end is taken as the zero, `NOWHERE` if there is none.
         """
-        known = self.known
+        ends = self.bracket
 
         def value(s: float) -> tuple[float, float]:
             self.point(way, s, found, 0)
@@ -303,12 +303,12 @@ class Corrector:
             # an end that is itself the zero may have either sign, by rounding
             if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
                 return NOWHERE
-            outcome, seen, end = AT_END, 1.0, 0.0 if abs(first) < abs(last) else 1.0
-            known[0] = end
+            outcome, evaluated, end = AT_END, 1.0, 0.0 if abs(first) < abs(last) else 1.0
+            ends[0] = end
         else:
-            bracket = Bracket(1.0, last, last_p, 0.0, first, first_p, *known[[PRECISION, JUMP]].tolist())
-            seen, outcome, end = bracket.narrow(value), PASSED, bracket.best
-            known[ENDS] = bracket.x1, bracket.f1, bracket.p1, bracket.x2, bracket.f2, bracket.p2
-        if end != seen or found.numbers[0, 1] < 0.0:  # evaluate the best position again
+            bracket = Bracket(1.0, last, last_p, 0.0, first, first_p, *ends[[PRECISION, JUMP]].tolist())
+            evaluated, outcome, end = bracket.narrow(value), PASSED, bracket.best
+            ends[ENDS] = bracket.x1, bracket.f1, bracket.p1, bracket.x2, bracket.f2, bracket.p2
+        if end != evaluated or found.numbers[0, 1] < 0.0:  # evaluate the best position again
             value(end)
         return outcome

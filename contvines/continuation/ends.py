@@ -18,8 +18,8 @@ class Closing:
         self.engine, self.start = engine, start
         self.left = False  # whether a chunk has gone away from the start
 
-    def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
-        """Return the chunk up to the start, or None if it does not reach it; `apart` bounds the distance of neighbouring points."""
+    def cut(self, chunk: Chunk, spacing: float = np.inf) -> Chunk | None:
+        """Return the chunk up to the start, or None if it does not reach it; `spacing` bounds the distance of neighbouring points."""
         engine = self.engine
         if engine.adaptive is not None:
             return self._on_other_meshes(chunk)
@@ -28,7 +28,7 @@ class Closing:
             rises = chunk.values[-1] > self.start.p
             if (changes > 0.0 if rises else changes < 0.0).all():
                 return None  # the parameter changes in one direction only
-        far = NEAR * apart * (engine.upper - engine.lower)
+        far = NEAR * spacing * (engine.upper - engine.lower)
         if self.start.p < chunk.values.min() - far or self.start.p > chunk.values.max() + far:
             return None
         z, border = engine.join(self.start.u, self.start.p), engine.weights * self.start.tangent
@@ -73,15 +73,15 @@ class Closing:
             found = engine.at_value(guess, start.p)
             if found is None:
                 continue
-            key, here = problem.canonical(found.u, found.p)
-            wanted, there = problem.canonical(start.u, start.p)
-            if key == wanted and here.shape == there.shape:
-                size = engine.scale[: len(here)] if len(here) < len(engine.scale) else 1.0
-                if (np.abs(here - there) <= engine.settings.one_place * (size + np.abs(there))).all():
+            key, form = problem.canonical(found.u, found.p)
+            wanted, target = problem.canonical(start.u, start.p)
+            if key == wanted and form.shape == target.shape:
+                size = engine.scale[: len(form)] if len(form) < len(engine.scale) else 1.0
+                if (np.abs(form - target) <= engine.settings.one_place * (size + np.abs(target))).all():
                     points = chunk.cut(int(i) + 1)
                     # end with the point found, not with the start: the start may be shifted in time, or lie on another mesh
-                    way = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0
-                    found = found._replace(tangent=way * found.tangent, sign=way * found.sign)
+                    sense = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0
+                    found = found._replace(tangent=sense * found.tangent, sign=sense * found.sign)
                     return points.joined(packed([found], Status.CLOSED))
         return None
 
@@ -130,15 +130,15 @@ class Reach:
             return 1.0
         return max(1.0, float(self._distances(point.u[None, :])[0]) / GROWS_FROM)
 
-    def escapes(self, chunk: Chunk, apart: float = np.inf) -> int | None:
-        """Return the index of the first point at which the branch has run away, or None; `apart` bounds the distance of neighbouring points."""
+    def escapes(self, chunk: Chunk, spacing: float = np.inf) -> int | None:
+        """Return the index of the first point at which the branch has run away, or None; `spacing` bounds the distance of neighbouring points."""
         escape = self.engine.settings.escape
         if not self.learned:
             scale = self.engine.scale[:-1]
             begin = float(
                 np.abs((chunk.points[0] - self.start.u) / scale).max()
             )  # no root mean square is larger
-            if begin + len(chunk) * apart < escape:
+            if begin + len(chunk) * spacing < escape:
                 return None
             away = _away(chunk.points, self.start.u, escape, scale)
             return int(np.argmax(away)) if away.any() else None
@@ -167,8 +167,8 @@ class Reach:
             share = moved / self.moved if comparable and self.moved > 0.0 else np.nan
             # near the start changes shrink on every branch; by a constant ratio only towards a pole, which here must lie in the interval
             pole = abs(share - self.share) <= STEADY * share and moved * share < (1.0 - share) * room
-            soon = DOUBLINGS * moved < room and (pole or stands)
-            bound = not self.bounded and comparable and moved <= self.moved and (last or soon)
+            early = DOUBLINGS * moved < room and (pole or stands)
+            bound = not self.bounded and comparable and moved <= self.moved and (last or early)
             family = self.bounded and stands and self._one_of_a_family(chunk.rows[i])
             if bound or distances[i] > (FAMILY_ESCAPE if family else SOLUTION.huge) * escape:
                 return i

@@ -53,7 +53,7 @@ def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) ->
     return own if own < length else length
 
 
-def _of_rows(extreme: np.ufunc, rows: np.ndarray) -> np.ndarray:
+def _extreme_of_rows(extreme: np.ufunc, rows: np.ndarray) -> np.ndarray:
     """Return the smallest or largest entry of each row; for few columns column by column, which takes a tenth of the time."""
     if rows.ndim == 1 or rows.shape[-1] > 16:
         return np.asarray(extreme.reduce(rows, axis=-1))
@@ -151,12 +151,13 @@ class Engine:
         self.guess = np.zeros((4, n + 1))  # data of a chord of which only the first end is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
-        self.known = np.zeros(SIZE)
+        self.bracket = np.zeros(SIZE)
         self.loop = self.loop_with(self.metric)
 
     def loop_with(self, metric: Metric) -> InterpretedLoop | NativeLoop:
         """Return the loop for march and single points: in the native core for compiled problems, if it is used, else in Python."""
-        kernels, rest = self.kernels, (metric, self.noise, self.known, self.scratch, self.settings.step_rule)
+        kernels = self.kernels
+        rest = metric, self.noise, self.bracket, self.scratch, self.settings.step_rule
         if self.compiled and isinstance(kernels, TableKernels):
             from .native import NativeLoop
 
@@ -240,7 +241,7 @@ class Engine:
         margins = rows[..., 2 * self.m :]  # fmin ignores NaN
         if margins.ndim == 1 or not margins.shape[-1]:
             return np.fmin.reduce(margins, axis=-1, initial=np.inf)
-        return np.fmin(_of_rows(np.fmin, margins), np.inf)
+        return np.fmin(_extreme_of_rows(np.fmin, margins), np.inf)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:
         """Return the multipliers of the full period of some rows, shape (..., m)."""
@@ -263,8 +264,8 @@ class Engine:
             return np.full(rows.shape[:-1], -np.inf)
         spectrum = self.spectrum(rows)
         if self.problem.spectrum == "flow":
-            return _of_rows(np.maximum, spectrum.real)
-        return _of_rows(np.maximum, np.abs(spectrum)) - 1.0
+            return _extreme_of_rows(np.maximum, spectrum.real)
+        return _extreme_of_rows(np.maximum, np.abs(spectrum)) - 1.0
 
     # ------------------------------------------------------------------ single points
     def solve(
@@ -314,13 +315,13 @@ class Engine:
         tolerance, jump : float
             See :class:`contvines.continuation.bracketing.Bracket`.
         """
-        known = self.known
-        known[PRECISION], known[JUMP] = tolerance, jump
+        bracket = self.bracket
+        bracket[PRECISION], bracket[JUMP] = tolerance, jump
         found, outcome = self._run(way, ONE, aim)
         if outcome == NOWHERE:
             return None
         point = solved_point(found, 0)
-        one, f_one, p_one, other, f_other, p_other = known[ENDS].tolist()
+        one, f_one, p_one, other, f_other, p_other = bracket[ENDS].tolist()
         if outcome == AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
         place = one if abs(f_one) < abs(f_other) else other

@@ -379,15 +379,15 @@ def multiplier(row, count, kind, sort, rank):
         return -nearest
     value, taken = math.inf, -1
     for _ in range(rank):  # the largest, then the largest of the others ...
-        largest, which = -math.inf, -1
+        largest, index = -math.inf, -1
         for j in range(count):
             if not _belongs(row[2 * j + 1], kind, sort):
                 continue
             own = _size(row[2 * j], row[2 * j + 1], kind, sort)
             follows = own < value or (own == value and j > taken)
-            if follows and (which < 0 or own > largest):
-                largest, which = own, j
-        value, taken = largest, which
+            if follows and (index < 0 or own > largest):
+                largest, index = own, j
+        value, taken = largest, index
     if kind == MAP:
         value = (math.log(value) if value < math.inf else LIMIT) if value > 0.0 else -LIMIT
     return min(max(value, -LIMIT), LIMIT)

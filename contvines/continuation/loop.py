@@ -39,11 +39,11 @@ class InterpretedLoop(Corrector):
         work: object,
         metric: Metric,
         noise: float,
-        known: np.ndarray,
+        bracket: np.ndarray,
         scratch: Scratch,
         rule: StepRule,
     ) -> None:
-        super().__init__(kernels, data, work, metric, noise, known, scratch)
+        super().__init__(kernels, data, work, metric, noise, bracket, scratch)
         self.rule = rule
 
     def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:

@@ -84,11 +84,11 @@ class NativeLoop:
         sizes: tuple[int, int],
         metric: Metric,
         noise: float,
-        known: np.ndarray,
+        bracket: np.ndarray,
         scratch: Scratch,
         rule: StepRule,
     ) -> None:
-        self.kept = data, work, known, scratch
+        self.references = data, work, bracket, scratch
         self.frame = pack(
             table,
             memory_of(data),
@@ -98,7 +98,7 @@ class NativeLoop:
             float(metric.of_parameter),
             float(noise),
             *scratch,
-            known,
+            bracket,
             LIMITS,
         )
         self.at = address(self.frame)
@@ -115,7 +115,7 @@ class NativeLoop:
         )
         judge = None if self.judge is None else self.judge.address
         while status == Status.RUNNING and filled.value < size and not wanted():
-            begun = perf_counter()
+            began = perf_counter()
             status = _march()(
                 self.at,
                 *arrays,
@@ -128,7 +128,7 @@ class NativeLoop:
             )
             if self.judge is not None:
                 self.judge.raise_again()
-            seconds = perf_counter() - begun
+            seconds = perf_counter() - began
             if seconds < BRIEF:
                 self.at_once *= 2
             elif seconds > LONG:

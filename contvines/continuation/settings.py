@@ -353,8 +353,8 @@ def hinted(thing: type[T]) -> type[T]:
     return near_names.hinted(thing, _setting)
 
 
-def _setting(name: str, value: object, known: Sequence[str]) -> str:
+def _setting(name: str, value: object, names: Sequence[str]) -> str:
     """Return a hint if the name of an unknown argument is that of a setting; else empty."""
-    if "settings" not in known or name not in [field.name for field in fields(Settings)]:
+    if "settings" not in names or name not in [field.name for field in fields(Settings)]:
         return ""
     return f"it is a setting: use settings={{{name!r}: {value!r}}}"

@@ -96,8 +96,8 @@ def problem_and_start(
         if over is not None and over != problem.parameter and over in problem.parameters:
             problem = problem.against(over)
         if over is not None and over != problem.parameter:
-            known = f"; its parameters are {', '.join(problem.parameters)}" if problem.parameters else ""
-            raise ValueError(f"over = {over!r}, but this problem continues in {problem.parameter!r}{known}")
+            choices = f"; its parameters are {', '.join(problem.parameters)}" if problem.parameters else ""
+            raise ValueError(f"over = {over!r}, but this problem continues in {problem.parameter!r}{choices}")
         if u is None or p is None:
             if not isinstance(problem, Started):
                 raise ValueError(
@@ -112,8 +112,8 @@ def problem_and_start(
         )
     names = list(getattr(seed, "parameters", None) or ("amplitude",))
     if over is None and len(names) > 1:
-        known = ", ".join(map(repr, names))
-        raise ValueError(f"over = None: name the parameter to continue in, one of {known}")
+        choices = ", ".join(map(repr, names))
+        raise ValueError(f"over = None: name the parameter to continue in, one of {choices}")
     over = over or names[0]
     problem = seed.problem(over)
     own_u, own_p = seed.seed(problem)
@@ -165,14 +165,14 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
         if different := unlike_twice(engine, u, p):
             raise ValueError(f"the start at {name} = {p:.10g}: {different}")
         residual = engine.residual(u, p)
-        why = f"does not converge (its residual is {residual:.3g})"
+        reason = f"does not converge (its residual is {residual:.3g})"
         if residual < SOLUTION.solved:
-            why = "is a solution, but the derivatives of the equations are zero or singular there, in the parameter, too"
+            reason = "is a solution, but the derivatives of the equations are zero or singular there, in the parameter, too"
         elif not residual < np.inf:
             trouble = getattr(engine.problem, "trouble", "")
-            why = "cannot be evaluated with its derivatives" + (f"; {trouble}" if trouble else "")
+            reason = "cannot be evaluated with its derivatives" + (f"; {trouble}" if trouble else "")
         raise ValueError(
-            f"the start at {name} = {p:.10g} {why}; give a better guess or another parameter value"
+            f"the start at {name} = {p:.10g} {reason}; give a better guess or another parameter value"
         )
     return found
 
@@ -210,7 +210,9 @@ def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     problem = engine.problem
     if engine.compiled or not isinstance(problem, Rough):
         return ""
-    return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem, problem.scales)) if part)
+    return "; ".join(
+        part for part in (_moved_note(engine, u, p, found), _unscaled_note(problem, problem.scales)) if part
+    )
 
 
 def _name(problem: object, i: int) -> str:
@@ -218,7 +220,7 @@ def _name(problem: object, i: int) -> str:
     return problem.unknown_name(i) if isinstance(problem, Named) else f"u{i}"
 
 
-def _untold(problem: object, scales: Scales | None) -> str:
+def _unscaled_note(problem: object, scales: Scales | None) -> str:
     """Return a sentence on unknowns whose typical sizes cannot be derived at the start; empty if there are none."""
     if scales is None or not scales.untold:
         return ""
@@ -228,7 +230,7 @@ def _untold(problem: object, scales: Scales | None) -> str:
     return f"the start does not show how large {names} may become: 1 is assumed; scale= sets another size"
 
 
-def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
+def _moved_note(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     """Return a sentence on a start that was no solution; empty if it was one."""
     problem = engine.problem
     assert isinstance(problem, Rough)
@@ -247,8 +249,8 @@ def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
             f"the start given is no solution (the largest entry of F is {size:.2g}), and Newton's method ends far away, at "
             f"{place}; give a better guess or another parameter value"
         )
-    where = place
+    position = place
     if shift >= SOLUTION.told:
-        where += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"
+        position += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"
     far = f", {moved[i]:.2g} of its typical size away" if moved[i] >= 0.1 else ""
-    return f"the start given is no solution (the largest entry of F is {size:.2g}): the branch begins at {where}{far}"
+    return f"the start given is no solution (the largest entry of F is {size:.2g}): the branch begins at {position}{far}"

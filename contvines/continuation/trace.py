@@ -89,8 +89,8 @@ def chunks(
         history = motion.adapted([motion.steered(start)])
         h, capacity = settings.first_step if first_step is None else first_step, settings.first_chunk
         closing, reach = Closing(engine, start), Reach(engine, start)
-        wish: Retrace | Finer | None = None
-        total, number, still = 1, 0, False
+        request: Retrace | Finer | None = None
+        total, number, standing = 1, 0, False
         while True:
             name, before = f"{key}/{number}", (h, copy(closing), copy(reach))
             most = min(8 * settings.chunk, LARGEST // (2 * engine.n + engine.row_size))
@@ -102,12 +102,12 @@ def chunks(
                     *(np.asarray(recorded[part]) for part in OF_SOLVED),
                     status=Status(int(recorded["status"])),
                 )
-                h, still = float(recorded["h"]), bool(recorded.get("still", False))
+                h, standing = float(recorded["h"]), bool(recorded.get("still", False))
                 reach.escapes(chunk)
             else:
                 room, longest = capacity, settings.max_step * reach.growth(history[-1])
-                if isinstance(wish, Retrace):
-                    room, longest = RETRACED, min(wish.longest, longest)
+                if isinstance(request, Retrace):
+                    room, longest = RETRACED, min(request.longest, longest)
                     h = min(h, longest)
                 if not engine.compiled:
                     # points are expensive, and closing of a branch is tested only at the end of a chunk
@@ -115,22 +115,22 @@ def chunks(
                 if engine.adaptive is not None:
                     room = min(room, engine.adaptive.chunk)
                 room = min(room, max(settings.max_points - total, 1))
-                apart = _apart(engine, max(h, longest))
-                loop = motion.standing_loop if still else engine.loop
+                spacing = _largest_spacing(engine, max(h, longest))
+                loop = motion.standing_loop if standing else engine.loop
                 chunk, h = _march(engine, loop, history, room, h, longest, stop_at_border)
-                stuck = chunk.status == Status.STEP_TOO_SMALL and engine.moving is not None and not still
-                still = stuck
+                stuck = chunk.status == Status.STEP_TOO_SMALL and engine.moving is not None and not standing
+                standing = stuck
                 if stuck:
                     # the motion of the mesh may be discontinuous where the solutions are smooth: fix the mesh for one chunk
                     h = settings.first_step
                     if len(chunk) > 1:
                         chunk.status = Status.RUNNING
                     else:
-                        history, still = motion.adapted(history[-1:], still), False
+                        history, standing = motion.adapted(history[-1:], standing), False
                         loop = motion.standing_loop
                         chunk, h = _march(engine, loop, history, room, h, longest, stop_at_border)
-                closed = closing.cut(chunk, apart)
-                away = reach.escapes(chunk, apart)
+                closed = closing.cut(chunk, spacing)
+                away = reach.escapes(chunk, spacing)
                 if closed is not None:
                     chunk = closed
                 elif away is not None:
@@ -143,33 +143,33 @@ def chunks(
                 # a chunk without a step is not recorded, so that a rejected start leaves no journal
                 if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
                     journal.record(
-                        name, {**_kept(chunk), "status": int(chunk.status), "h": h, "still": still}
+                        name, {**_stored(chunk), "status": int(chunk.status), "h": h, "still": standing}
                     )
             chunk.before = history[-2] if len(history) > 1 else None
-            wish = yield chunk
+            request = yield chunk
             number += 1
-            if isinstance(wish, Finer):
+            if isinstance(request, Finer):
                 motion.release()
-                last, start = wish.image(history[-1]), wish.image(closing.start)
+                last, start = request.image(history[-1]), request.image(closing.start)
                 h, closing, reach = before  # the state before this chunk
-                engine, motion, still = wish.engine, MeshMotion(wish.engine), False
+                engine, motion, standing = request.engine, MeshMotion(request.engine), False
                 history = motion.adapted([motion.steered(last)])
                 for watch in (closing, reach):
                     watch.engine, watch.start = engine, start
                 continue
-            if wish is not None:
-                chunk = chunk.cut(wish.count)
+            if request is not None:
+                chunk = chunk.cut(request.count)
             elif chunk.status != Status.RUNNING:
                 return
             total += len(chunk) - 1
             history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
-            history = motion.adapted(history, still)
+            history = motion.adapted(history, standing)
             capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
     finally:
         motion.release()
 
 
-def _kept(chunk: Chunk) -> dict[str, Any]:
+def _stored(chunk: Chunk) -> dict[str, Any]:
     """Return the arrays of a chunk for a journal; points and tangents, which nobody changes, as read-only views, so that they need no copy."""
     values: dict[str, Any] = {part: getattr(chunk, part) for part in OF_SOLVED}
     for part in ("points", "tangents"):
@@ -193,15 +193,15 @@ def _march(
     signs, corrections = np.zeros((2, size))
     points, tangents = np.empty((size, n)), np.empty((size, n + 1))
     chunk = Chunk(points, np.empty(size), tangents, engine.rows(size), signs, corrections, Status.RUNNING)
-    for array, known in zip(chunk.arrays, packed(history, chunk.status).arrays, strict=True):
-        array[:first] = known
+    for array, earlier in zip(chunk.arrays, packed(history, chunk.status).arrays, strict=True):
+        array[:first] = earlier
     control = engine.control._replace(stop_at_border=stop_at_border, max_step=longest)
     with engine.section:
         filled, h, status = loop.march(chunk, first, float(h), control)
     return Chunk(*(array[first - 1 : filled] for array in chunk.arrays), status=Status(status)), float(h)
 
 
-def _apart(engine: Engine, longest: float) -> float:
+def _largest_spacing(engine: Engine, longest: float) -> float:
     """Return a bound of the distance of neighbouring points after steps of at most this length; inf for a user-defined step rule.
 
     The built-in rule allows an error of angle < 1 times the length, and the step to the end of the interval may be 1.5^2 times as long.
@@ -362,17 +362,17 @@ class MeshMotion:
         along = engine.inner(direction, chord) > LEAST_COSINE * engine.norm(chord) * engine.norm(direction)
         return None if along else self.moving.carried(u, other)
 
-    def adapted(self, history: list[Solved], still: bool = False) -> list[Solved]:
+    def adapted(self, history: list[Solved], standing: bool = False) -> list[Solved]:
         """Adapt the mesh to the last point of a branch.
 
-        Returns the last points unchanged if mesh and phase still suit the last one; else only the last one, with its new mesh and phase. With `still`
+        Returns the last points unchanged if mesh and phase still suit the last one; else only the last one, with its new mesh and phase. With `standing`
         the mesh is fixed for the next steps.
         """
         engine, problem = self.engine, self.adaptive
         if problem is None:
             return history
         last, image = history[-1], problem.adapted(history[-1].u)
-        if image is None and problem.in_phase(last.u) and not still:
+        if image is None and problem.in_phase(last.u) and not standing:
             return history
         problem.anchor(last.u, last.p)
         last = self.standing(last)
@@ -385,7 +385,7 @@ class MeshMotion:
                 problem.anchor(last.u, last.p)
             else:
                 last = found
-        return [last if still else self.steered(last)]
+        return [last if standing else self.steered(last)]
 
     def _past_a_border(self, before: Solved, after: Solved) -> bool:
         """Whether a point has lost its positive margins by adaptation of the mesh."""

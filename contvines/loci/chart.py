@@ -78,8 +78,8 @@ class Chart(Resumable):
         for group in (self.loci, self.points):
             if label in group:
                 return group[label]
-        known = ", ".join([*self.loci, *self.points]) or "none yet"
-        raise KeyError(f"the chart has no label {label!r}; it has {known}")
+        labels = ", ".join([*self.loci, *self.points]) or "none yet"
+        raise KeyError(f"the chart has no label {label!r}; it has {labels}")
 
     def __contains__(self, label: object) -> bool:
         return label in self.loci or label in self.points
@@ -231,8 +231,8 @@ def chart_from_entries(
         own = dict(content)
         for name in ("parameters", "value", "margins"):
             own[name] = tuple(own[name])
-        on = [chart.loci[name].problem for name in own["on"] if name in chart.loci]
-        owners = [each for each in on if each is not None and each.size == len(own["u"])]
+        loci = [chart.loci[name].problem for name in own["on"] if name in chart.loci]
+        owners = [each for each in loci if each is not None and each.size == len(own["u"])]
         problem = owners[0].at(own["value"][1]) if owners else None
         chart.points[label] = PlanePoint(problem=problem, **own)
     for label, found in marks.items():

@@ -84,8 +84,8 @@ def chart(
     if not points:
         raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
 
-    def begun(kept: Journal, tell: Tell | None) -> tuple[Chart, Callable[[], None]]:
-        run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), kept, tell)
+    def start(stored: Journal, report: Tell | None) -> tuple[Chart, Callable[[], None]]:
+        run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), stored, report)
 
         def carry_on() -> None:
             for point in sorted(points, key=lambda point: not _ends_stability(graph, point)):
@@ -97,7 +97,7 @@ def chart(
 
         return run.chart, carry_on
 
-    return carried_out(begun, journal, progress, interrupt)
+    return carried_out(start, journal, progress, interrupt)
 
 
 def _ends_stability(graph: Graph, point: SpecialPoint) -> bool:

@@ -116,15 +116,15 @@ class Charting:
             waiting, loci, points = len(self.queue), len(self.chart.loci), len(self.chart.points)
             if seconds is None:
                 seconds = (monotonic() - self.begun) * waiting / self.done if self.done else float("nan")
-            known = self.done + waiting + self.tracing
-            self.progress(ChartProgress(message, loci, points, waiting, self.done, known, seconds))
+            total = self.done + waiting + self.tracing
+            self.progress(ChartProgress(message, loci, points, waiting, self.done, total, seconds))
 
-    def counted(self, what: str, pieces: Sequence[T]) -> Iterator[T]:
+    def counted(self, name: str, pieces: Sequence[T]) -> Iterator[T]:
         """Generate pieces of work (regions, crossings), and report each with the estimated remaining time."""
-        begun = monotonic()
+        began = monotonic()
         for i, piece in enumerate(pieces):
-            left = (monotonic() - begun) * (len(pieces) - i) / i if i else float("nan")
-            self.tell(f"{what} {i + 1} of {len(pieces)}", left)
+            left = (monotonic() - began) * (len(pieces) - i) / i if i else float("nan")
+            self.tell(f"{name} {i + 1} of {len(pieces)}", left)
             yield piece
 
     def label(self, prefix: str) -> str:
@@ -185,9 +185,9 @@ class Charting:
         own = candidate.seed in self.graph.special
         prefix = kind_named(candidate.kind).label
         label = candidate.seed if own else self.label(prefix)
-        about = self.over, self.within, self.bounds, self.settings, label, self.virtual, self.journal
+        arguments = self.over, self.within, self.bounds, self.settings, label, self.virtual, self.journal
         try:
-            locus = trace_locus(candidate, *about, self.tell_points)
+            locus = trace_locus(candidate, *arguments, self.tell_points)
         except ValueError as error:
             self.refused.append(f"{candidate.seed}: {error}")
             locus = None
@@ -204,7 +204,7 @@ class Charting:
         """Return the traced locus on which a candidate lies, or None."""
         wanted = condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
-            problem, there = locus.problem, candidate
+            problem, start = locus.problem, candidate
             if problem is None:
                 continue
             # a fold may also lie on a locus of branch points, where branches cross instead of folding
@@ -212,10 +212,10 @@ class Charting:
                 continue
             if wanted == PERIOD:  # cycles of another long period represent the same homoclinic orbits
                 try:
-                    there = with_period(candidate, problem.reference)
+                    start = with_period(candidate, problem.reference)
                 except ValueError:
                     continue
-            if self.passes(locus, problem, there, border=wanted == MARGIN):
+            if self.passes(locus, problem, start, border=wanted == MARGIN):
                 return locus
         return None
 
@@ -231,17 +231,19 @@ class Charting:
             return False  # the locus of a doubled motion ends where it becomes the motion itself, whose locus continues
         form = candidate.problem.canonical(candidate.u, candidate.p)
         engine = self.forms.setdefault(locus.label, Engine(problem, self.within, self.settings))
-        steps, way = np.diff(values, axis=0) / unit, (place - values[:-1]) / unit
-        shares = (way * steps).sum(axis=1) / np.maximum((steps**2).sum(axis=1), TINY)
-        beside = (np.abs(shares - 0.5) <= 0.6) & (np.abs(way - shares[:, None] * steps).max(axis=1) < BESIDE)
-        for i in np.flatnonzero(beside | (near[:-1] < PLACES.end) | (near[1:] < PLACES.end)):
+        steps, offset = np.diff(values, axis=0) / unit, (place - values[:-1]) / unit
+        shares = (offset * steps).sum(axis=1) / np.maximum((steps**2).sum(axis=1), TINY)
+        nearby = (np.abs(shares - 0.5) <= 0.6) & (
+            np.abs(offset - shares[:, None] * steps).max(axis=1) < BESIDE
+        )
+        for i in np.flatnonzero(nearby | (near[:-1] < PLACES.end) | (near[1:] < PLACES.end)):
             share = float(np.clip(shares[i], 0.0, 1.0))
             guess = (1.0 - share) * locus.branch.points[i] + share * locus.branch.points[i + 1]
             q = float((1.0 - share) * values[i, 1] + share * values[i + 1, 1])
             # solve for the point of the locus on the line through the place, perpendicular to the segment
-            across = np.zeros(len(guess) + 1)
-            across[size], across[-1] = steps[i] / unit * (problem.unit, 1.0)
-            found = engine.solve(guess, q, across, float(steps[i] / unit @ place)) if across.any() else None
+            along = np.zeros(len(guess) + 1)
+            along[size], along[-1] = steps[i] / unit * (problem.unit, 1.0)
+            found = engine.solve(guess, q, along, float(steps[i] / unit @ place)) if along.any() else None
             U, q = (guess, q) if found is None else (found.u, found.p)
             u, p = problem.split(U)
             if np.abs(([p, q] - place) / unit).max() > (PLACES.end if found is None else PLACES.same):
@@ -259,8 +261,8 @@ class Charting:
 
     def same(self, one: PlanePoint, other: PlanePoint) -> bool:
         """Whether two points are equal: the same kind at the same place."""
-        apart = np.abs(np.subtract(one.value, other.value))
-        return one.kind == other.kind and bool((apart <= PLACES.same * self.widths).all())
+        difference = np.abs(np.subtract(one.value, other.value))
+        return one.kind == other.kind and bool((difference <= PLACES.same * self.widths).all())
 
     # ------------------------------------------------------------------ regions and crossings
     def divide(self) -> None:
@@ -269,11 +271,13 @@ class Charting:
         curves = [np.where(locus.real[:, None], locus.values, np.nan) for locus in loci]
         problem = next(iter(graph.branches.values())).attached
         regions = divide(curves, self.chart.within)
-        known = KnownMotions(graph.branches.values(), loci, self.over, self.chart.within)
+        known_motions = KnownMotions(graph.branches.values(), loci, self.over, self.chart.within)
         for region in self.counted("region", regions):
-            region.attractors = self.attractors_at(problem, region.at, known)
+            region.attractors = self.attractors_at(problem, region.at, known_motions)
             for place in region.elsewhere:
-                place["attractors"] = self.attractors_at(problem, (place["at"][0], place["at"][1]), known)
+                place["attractors"] = self.attractors_at(
+                    problem, (place["at"][0], place["at"][1]), known_motions
+                )
         self.chart.regions = regions
 
     def attractors_at(
@@ -283,9 +287,11 @@ class Charting:
         key = f"region/{place[0]!r}/{place[1]!r}"
         entry = self.journal.recall(key)
         if entry is None:
-            there = problem.against(problem.parameter, {self.over: place[1]})
+            there_problem = problem.against(problem.parameter, {self.over: place[1]})
             size = 0.0 if problem.scales is None else float(problem.scales.unknowns.max())
-            entry = {"attractors": together(there.simulated_attractors(place[0]), motions.at(place), size)}
+            entry = {
+                "attractors": together(there_problem.simulated_attractors(place[0]), motions.at(place), size)
+            }
             self.journal.record(key, entry)
         return list(entry["attractors"])
 
@@ -326,16 +332,16 @@ def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]]) -> list[
     """
     lows, widths = np.array(chart.within)[:, 0], np.diff(chart.within)[:, 0]
     curves = {label: (locus.values - lows) / widths for label, locus in chart.loci.items()}
-    met: list[Met] = []
+    candidates: list[Met] = []
     for one, other in combinations(chart.loci, 2):
         real, others = chart.loci[one].real, chart.loci[other].real
-        met += [
+        candidates += [
             (one, other, i, j, lows + place * widths)
             for i, j, place in segments(curves[one], curves[other])
             if real[i : i + 2].all() and others[j : j + 2].all()
         ]
     found: list[dict[str, Any]] = []
-    for one, other, i, j, place in each(met):
+    for one, other, i, j, place in each(candidates):
         p, q, error = _crossing(chart.loci[one], chart.loci[other], i, j, place)
         meetings = [p.value for p in chart.points.values() if one in p.on and other in p.on]
         if any(np.abs((np.array([p, q]) - m) / widths).max() < max(PLACES.end, error) for m in meetings):
@@ -364,28 +370,28 @@ def _crossing(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) ->
     """(p, q, error) of a crossing: by the secant method in q if both loci can be solved at given q, else the crossing of the segments."""
     p, q = float(place[0]), float(place[1])
     low, high = first.within
-    both = [(first, i), (second, j)]
-    size = max(float(abs(np.diff(locus.branch.values[k : k + 2])[0])) for locus, k in both)
-    met = p, q, size / (high - low)
+    curves = [(first, i), (second, j)]
+    size = max(float(abs(np.diff(locus.branch.values[k : k + 2])[0])) for locus, k in curves)
+    rough = p, q, size / (high - low)
     if first.problem is None or second.problem is None:
-        return met
-    engines = [Engine(locus.branch.attached, first.within, Settings()) for locus, _ in both]
+        return rough
+    engines = [Engine(locus.branch.attached, first.within, Settings()) for locus, _ in curves]
 
     def gap(value: float) -> tuple[float, float] | None:
-        solved = [on_segment(engine, locus.branch, k, value) for engine, (locus, k) in zip(engines, both)]
-        ends = [float(point.u[locus.size]) for point, (locus, _) in zip(solved, both) if point is not None]
+        solved = [on_segment(engine, locus.branch, k, value) for engine, (locus, k) in zip(engines, curves)]
+        ends = [float(point.u[locus.size]) for point, (locus, _) in zip(solved, curves) if point is not None]
         return None if len(ends) < 2 else (ends[0] - ends[1], ends[0])
 
     before, value = q, q + Settings.aside * size + Settings.located * (high - low)
     last = gap(before)
     for _ in range(20):
-        here = gap(value)
-        if last is None or here is None or here[0] == last[0]:
+        reached = gap(value)
+        if last is None or reached is None or reached[0] == last[0]:
             break
-        step = -here[0] * (value - before) / (here[0] - last[0])
+        step = -reached[0] * (value - before) / (reached[0] - last[0])
         if not abs(value + step - q) <= 2.0 * size:
             break
-        before, last, value = value, here, value + step
+        before, last, value = value, reached, value + step
         if abs(step) < Settings.rounding * (high - low):
-            return here[1], float(value), float(abs(step) / (high - low))
-    return met
+            return reached[1], float(value), float(abs(step) / (high - low))
+    return rough

@@ -116,15 +116,15 @@ def find(locus: Locus) -> list[Found]:
     if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(problem, points)):
         return []  # the tests are meaningless where the equations are singular all along the locus
     ends = (0, points[0]), (len(points) - 1, points[-1])
-    both = [(index, beginning(problem, end, locus.within)) for index, end in ends]
-    born = [(index, point) for index, point in both if point is not None]
+    at_ends = [(index, beginning(problem, end, locus.within)) for index, end in ends]
+    beginnings = [(index, point) for index, point in at_ends if point is not None]
     found: list[Found] = []
     for index, point in _zeros(problem, points, locus.within, list(sought(problem, locus.kinds))):
         # where the motions are born, further multipliers may be critical, and tests nearly vanish without being points
-        begins = any(_at_one_place(point, other, PLACES.end) for _, other in born)
+        begins = any(_at_one_place(point, other, PLACES.end) for _, other in beginnings)
         if not begins and not any(same_point(point, other) for _, other in found):
             found.append((index, point))
-    return sorted([*found, *born], key=lambda pair: pair[0])
+    return sorted([*found, *beginnings], key=lambda pair: pair[0])
 
 
 def bare_points(points: np.ndarray, values: np.ndarray, tangents: np.ndarray) -> list[Solved]:
@@ -162,12 +162,12 @@ def _zeros(
     """Generate the verified zeros of the tests between points of a locus, each with the index of the point before it."""
     plane, last = Plane(problem), len(points) - 2
     places = [_place(problem, point) for point in points]
-    beside: list[References | None] = []
+    references: list[References | None] = []
     for place in places:
-        before = beside[-1] if beside else None
-        beside.append(References(plane, before) if plane.to(place) else before)
-    rough = {each.kind: _by_few_digits(each, plane, places, beside) for each in wanted if each.rough}
-    for i, (ends, at) in enumerate(zip(pairwise(places), beside)):
+        before = references[-1] if references else None
+        references.append(References(plane, before) if plane.to(place) else before)
+    rough = {each.kind: _by_few_digits(each, plane, places, references) for each in wanted if each.rough}
+    for i, (ends, at) in enumerate(zip(pairwise(places), references)):
         if at is None or not plane.to(ends[0]):
             continue
         values = [
@@ -191,12 +191,12 @@ def _zeros(
 
 
 def _by_few_digits(
-    wanted: Sought, plane: Plane, places: Sequence[Place], beside: Sequence[References | None]
+    wanted: Sought, plane: Plane, places: Sequence[Place], references: Sequence[References | None]
 ) -> list[float]:
     """Values of an expensive test at all places: to a few digits, but exact at both ends of every change of sign (repeated, since the exact values may move it)."""
 
     def value(test: Test | None, j: int) -> float:
-        at = beside[j]
+        at = references[j]
         return math.nan if at is None or test is None else _value(plane, places[j], test, at)
 
     values, exact = [value(wanted.rough, j) for j in range(len(places))], set[int]()
@@ -382,11 +382,11 @@ def beginning(
     if start is None:
         return None
     reach = BESIDE + 2.0 * ahead / float(np.linalg.norm(start.tangent[-2:]))
-    around = [engine.beside(start, by) for by in (-reach, reach)]
-    beside = [point for point in around if point is not None]
-    if len(beside) < 2:
+    around = [engine.beside(start, step) for step in (-reach, reach)]
+    points = [point for point in around if point is not None]
+    if len(points) < 2:
         return None
-    found = [point for _, point in _zeros(parent, beside, within, wanted)]
+    found = [point for _, point in _zeros(parent, points, within, wanted)]
     return min(found, key=lambda point: abs(point.value[0] - p) + abs(point.value[1] - q), default=None)
 
 

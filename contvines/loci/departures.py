@@ -89,8 +89,8 @@ def leaving(point: PlanePoint, locus: Locus, bounds: Interval, over: str) -> Ite
         if not crossing:
             yield Candidate(problem, kind, u, p, q, point.label)
         elif kind != "fold":  # start next to the crossing, where the equations are regular
-            for aside in (-ASIDE, ASIDE):
-                yield Candidate(problem, kind, u, p + aside * (bounds[1] - bounds[0]), q, point.label)
+            for shift in (-ASIDE, ASIDE):
+                yield Candidate(problem, kind, u, p + shift * (bounds[1] - bounds[0]), q, point.label)
     if point.kind in CODIMENSION_TWO and CODIMENSION_TWO[point.kind].border:
         for j in point.margins:
             yield Candidate(problem, problem.margin_kind(j), u, p, q, point.label, j)
@@ -98,10 +98,10 @@ def leaving(point: PlanePoint, locus: Locus, bounds: Interval, over: str) -> Ite
         yield from homoclinic_of(point, bounds, locus.within)
     doubled = DOUBLED | DOUBLED_CYCLES if isinstance(problem, Adaptive) else DOUBLED
     if point.kind in doubled:
-        yield from _born(point, doubled[point.kind], _doubled(point), bounds, over, locus.within)
+        yield from _specials_beside(point, doubled[point.kind], _doubled(point), bounds, over, locus.within)
     elif point.kind in SMALL:
         children = problem.offspring("hopf", u, p, np.zeros(len(u) + 1), 1j)
-        yield from _born(point, SMALL[point.kind], children, bounds, over, locus.within)
+        yield from _specials_beside(point, SMALL[point.kind], children, bounds, over, locus.within)
 
 
 # ------------------------------------------------------------------ motions of a small amplitude
@@ -117,7 +117,7 @@ def _doubled(point: PlanePoint) -> Iterator[Embedding]:
         yield child._replace(tangent=direction)
 
 
-def _born(
+def _specials_beside(
     point: PlanePoint,
     kind: str,
     children: Iterable[Embedding],
@@ -128,17 +128,17 @@ def _born(
     """Generate special points of a kind on the motions that are born at a point, with a given small amplitude."""
     p, q = point.value
     for child in children:
-        problem, start, way = child.problem, np.asarray(child.u, dtype=float), child.tangent[:-1]
+        problem, start, direction = child.problem, np.asarray(child.u, dtype=float), child.tangent[:-1]
         units = Linearisation(problem).units
         cycles = isinstance(problem, Adaptive)  # cycles of a flow have many unknowns: use the maximum norm
-        way = way / np.linalg.norm(way / units, np.inf if cycles else 2)
-        n = len(way)
+        direction = direction / np.linalg.norm(direction / units, np.inf if cycles else 2)
+        n = len(direction)
         for amplitude in AMPLITUDES_OF_CYCLES if cycles else AMPLITUDES:
             size = amplitude * (1.0 + float(np.abs(start / units).max()))
-            guess = start + size * way
+            guess = start + size * direction
             locus = begin(Candidate(problem, kind, guess, p, q, point.label), over, bounds)
             border = np.zeros(locus.dimension + 1)
-            border[:n] = way / units**2
+            border[:n] = direction / units**2
             engine = Engine(locus, within, Settings())
             solved = engine.solve(locus.joined(guess, p), q, border, float(border[:n] @ guess))
             if solved is None or np.abs((solved.u[:n] - guess) / units).max() > 10.0 * size:
@@ -200,16 +200,16 @@ class Asymptotics:
         first, second = np.append(v, nothing), np.append(q1, nothing)
         square = self._bent(first, first)
         self.a, self.b = 0.5 * float(w @ square), float(w @ self._bent(first, second) + p0 @ square)
-        across = w @ by_value
-        across = across / (across @ across)
-        flat = np.array([-across[1], across[0]])
+        normal = w @ by_value
+        normal = normal / (normal @ normal)
+        flat = np.array([-normal[1], normal[0]])
         ahead = np.append(-solved(by_value @ flat), flat)
-        both = [(self._bent(first, along), self._bent(second, along)) for along in (ahead, first)]
-        system = np.array([[w @ one for one, _ in both], [p0 @ one + w @ other for one, other in both]])
+        bends = [(self._bent(first, along), self._bent(second, along)) for along in (ahead, first)]
+        system = np.array([[w @ one for one, _ in bends], [p0 @ one + w @ other for one, other in bends]])
         parts = np.linalg.solve(system, [0.0, 1.0])
         self.by_second = parts[0] * ahead + parts[1] * first
         bend = -0.5 * float(w @ self._bent(self.by_second, self.by_second))
-        self.states, self.across, self.bend = (first, second), np.append(np.zeros(d), across), bend
+        self.states, self.across, self.bend = (first, second), np.append(np.zeros(d), normal), bend
 
     def _line(self, direction: np.ndarray) -> np.ndarray:
         """Rates at seven points along a direction, in units of the states."""
@@ -266,20 +266,20 @@ def homoclinic_of(point: PlanePoint, bounds: Interval, within: Interval) -> Iter
     flow, widths, scale = problem.flow, np.full(INTERVALS, 1.0 / INTERVALS), near.units[: near.d]
     places = mesh.node_places(rule(flow.degree), widths)
     for share in SHARES:
-        x, (there, second), period = near.orbit(near.largest(share), places)
+        x, (first, second), period = near.orbit(near.largest(share), places)
         if not within[0] <= second <= within[1]:
             continue
         field = flow.field.against(
-            problem.values.against(problem.parameter, {problem.parameter: there, over: second})
+            problem.values.against(problem.parameter, {problem.parameter: first, over: second})
         )
         u = np.concatenate([x.reshape(-1), [period], widths])
         unit = 1.0 if problem.scales is None else problem.scales.parameter
         cycles = flow.cycles(field, u, (INTERVALS, 1, 1), (scale, period, unit))
-        found = of_period(on_mesh(cycles), u, there, period)
+        found = of_period(on_mesh(cycles), u, first, period)
         if found is None:
             continue
-        end, u, there = found
+        end, u, first = found
         size, wanted = (np.ptp(y.reshape(-1, near.d) / scale, axis=0).max() for y in (u[: end.states], x))
         if size > ALIKE * wanted:
-            yield Candidate(end, "homoclinic", u, there, second, point.label)
+            yield Candidate(end, "homoclinic", u, first, second, point.label)
             return

@@ -248,15 +248,15 @@ def particular(data, work):
 
 
 # ------------------------------------------------------------------ the kernels
-def frozen(work, here):
+def frozen(work, point):
     """Whether the point has moved so little that directions and derivatives of the last call can be reused; if not, store the point.
 
     The derivatives have errors of about the difference step, and they do not change more over such a distance.
     """
-    sizes = np.maximum(work.scales[: len(here)], np.abs(here))
-    if work.state[KNOWN] > 0.0 and (np.abs(here - work.frozen) < SCALING.step * sizes).all():
+    sizes = np.maximum(work.scales[: len(point)], np.abs(point))
+    if work.state[KNOWN] > 0.0 and (np.abs(point - work.frozen) < SCALING.step * sizes).all():
         return True
-    work.frozen[:] = here
+    work.frozen[:] = point
     return False
 
 
@@ -265,9 +265,9 @@ def locus_linearise(data, U, q, work):
     first, second, base, state, residuals = data.first, data.second, work.base, work.state, work.residual
     n, size, calls = len(work.base_F), len(U), data.calls
     u, p = U[:n], data.unit * U[n]
-    here = np.append(U, q)
-    still = frozen(work, here)
-    if not still:
+    place = np.append(U, q)
+    unmoved = frozen(work, place)
+    if not unmoved:
         state[KNOWN] = min(state[KNOWN], 0.0)
         calls.assign(second, first, p)
         if not math.isfinite(calls.linearise(second, u, q, base)):
@@ -278,12 +278,12 @@ def locus_linearise(data, U, q, work):
     if not math.isfinite(largest):
         return math.inf
     residuals[:n] = work.base_F + U[n + 1] * work.borders[B, :n] if data.kind == BRANCH else work.base_F
-    if not still:
+    if not unmoved:
         work.columns[0] = data.unit * work.base_Q
         span(data, work)
     particular(data, work)
     point = work.point
-    point[:] = here + work.directions[0]
+    point[:] = place + work.directions[0]
     tests(data, work, point[:n], data.unit * point[n], point[size], work.values)
     residuals[n:] = work.values[: size - n]
     work.kept[:] = residuals

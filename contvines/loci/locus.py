@@ -251,18 +251,18 @@ class Locus:
         crossed = np.flatnonzero((q[:-1] - value) * (q[1:] - value) <= 0.0)
         points = [on_segment(engine, branch, int(i), value) for i in crossed]
         found = np.sort([float(self.problem.split(point.u)[1]) for point in points if point is not None])
-        apart = np.diff(found, prepend=-np.inf) > PLACES.same * (1.0 + np.abs(found))
-        return found[apart]
+        distinct = np.diff(found, prepend=-np.inf) > PLACES.same * (1.0 + np.abs(found))
+        return found[distinct]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entry of this locus in the JSON of a chart."""
-        about = self.branch.description
+        data = self.branch.description
         return {
             "label": self.label,
             "kind": self.kind,
             **({"limit": self.limit} if self.limit else {}),
-            "word": about.get("word"),
-            "periods": about.get("periods"),
+            "word": data.get("word"),
+            "periods": data.get("periods"),
             "seed": self.seed,
             "values": self.values.tolist(),
             "real": [bool(r) for r in self.real],

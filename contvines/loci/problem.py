@@ -178,12 +178,12 @@ class LocusProblem(ProblemDefaults):
         self.compiled = bool(kernels.compiled) and native() and own_kind is None
         self.kernels = TableKernels(native_table("core_loci_table")) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
-        about = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
+        options = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
         own = None if own_kind is None else self._own
-        self.data = Data(self.first.data, self.second.data, self.first.kernels, *about, own=own)
+        self.data = Data(self.first.data, self.second.data, self.first.kernels, *options, own=own)
         if isinstance(kernels, TableKernels) and self.compiled:
             places = memory_of(self.first.data), memory_of(self.second.data)
-            self.data = self.data._replace(memory=pack(kernels.table, *places, *about))
+            self.data = self.data._replace(memory=pack(kernels.table, *places, *options))
         shift = problem.period_shift
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
@@ -252,7 +252,7 @@ class LocusProblem(ProblemDefaults):
 
     def again(self, problem: Problem, **changed: Any) -> Self:
         """Return the same locus for another problem, with some of its arguments changed."""
-        about = {
+        arguments = {
             "index": self.index,
             "bounds": self.bounds,
             "reference": self.reference,
@@ -260,7 +260,7 @@ class LocusProblem(ProblemDefaults):
             "unit": self.unit,
             "own_kind": self.own_kind,
         }
-        return type(self)(problem, self.kind, self.over, **about | changed)
+        return type(self)(problem, self.kind, self.over, **arguments | changed)
 
     def bordered_at(self, u: np.ndarray, p: float, q: float, reference: float) -> Self:
         """Return the same locus with the borders of one of its points, and a given position of the pair."""
@@ -283,8 +283,8 @@ class LocusProblem(ProblemDefaults):
         """Return a key and a vector of the special point, with its parameter value."""
         inner, value = self.split(np.asarray(u, dtype=float))
         key, vector = self.base.canonical(inner, float(value))
-        which = self.index if self.condition == MARGIN else 0
-        return (self.kind, which, key), np.append(vector, value / self.unit)
+        index = self.index if self.condition == MARGIN else 0
+        return (self.kind, index, key), np.append(vector, value / self.unit)
 
     @property
     def measure_names(self) -> tuple[str, ...]:
@@ -316,10 +316,10 @@ class LocusProblem(ProblemDefaults):
 
     def describe(self) -> dict[str, Any]:
         """Return a description from which `from_description` rebuilds the problem."""
-        about = dict(self.base.describe())
-        rebuilds = about.get("factory") and self.own_kind is None
+        base = dict(self.base.describe())
+        rebuilds = base.get("factory") and self.own_kind is None
         return {
-            **{key: about[key] for key in ("word", "periods", "impacts", "symmetric") if key in about},
+            **{key: base[key] for key in ("word", "periods", "impacts", "symmetric") if key in base},
             "name": f"{self.kind} locus",
             "kind": self.kind,
             "parameter": self.over,
@@ -330,7 +330,7 @@ class LocusProblem(ProblemDefaults):
             "masked": list(self.masked),
             **({"unit": self.unit} if self.unit != 1.0 else {}),
             "borders": self.borders.tolist(),
-            "problem": about,
+            "problem": base,
             "factory": f"{type(self).__module__}:from_description" if rebuilds else None,
         }
 
@@ -342,10 +342,10 @@ class LocusProblem(ProblemDefaults):
         problem, (low, high) = rebuild(description["problem"], trust), description["bounds"]
         if problem is None:
             return None
-        about = {name: description[name] for name in ("index", "borders", "reference", "masked")}
+        options = {name: description[name] for name in ("index", "borders", "reference", "masked")}
         unit = description.get("unit", 1.0)
         return cls(
-            problem, description["kind"], description["parameter"], bounds=(low, high), unit=unit, **about
+            problem, description["kind"], description["parameter"], bounds=(low, high), unit=unit, **options
         )
 
 

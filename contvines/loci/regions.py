@@ -288,24 +288,24 @@ def _counts(engine: Engine, solved: Solved) -> bool:
 
 def _can_be_listed(problem: Problem) -> bool:
     """Whether a solution can be an entry of `simulated_attractors`; motions without events are left out, since every simulation finds them."""
-    about = problem.describe()
-    return isinstance(problem, Attracting) and about.get("word") != ""
+    data = problem.describe()
+    return isinstance(problem, Attracting) and data.get("word") != ""
 
 
 def _key(problem: Problem, label: str) -> str:
     """Key that is equal for motions of one word; for motions without words it is the label of the branch."""
-    about = problem.describe()
-    if "word" not in about or "flow" in about:  # all cycles of flows have the word "cycle"
+    data = problem.describe()
+    if "word" not in data or "flow" in data:  # all cycles of flows have the word "cycle"
         return label
-    return f"{about.get('word')} {about.get('periods')} {bool(about.get('symmetric'))}"
+    return f"{data.get('word')} {data.get('periods')} {bool(data.get('symmetric'))}"
 
 
 def together(
-    simulated: list[dict[str, Any]], known: list[dict[str, Any]], size: float = 0.0
+    simulated: list[dict[str, Any]], continued: list[dict[str, Any]], size: float = 0.0
 ) -> list[dict[str, Any]]:
     """Return the simulated motions, and the known ones that the simulation has missed; `size` is a typical size of the unknowns."""
     result = list(simulated)
-    for one in known:
+    for one in continued:
         if not any(_one(one, other, size) for other in result):
             result.append(one)
     return result

@@ -94,8 +94,8 @@ def _multipliers(locus: LocusProblem) -> Iterator[Sought]:
     def look(kind: str, test: Test, zero: float = 0.0) -> Sought:
         return Sought(kind, test, partial(_inside, kind), zero=zero)
 
-    def coefficient(kind: str, of: NormalForm) -> Sought:
-        return Sought(kind, partial(_exact, of), partial(_inside, kind), partial(_few_digits, of))
+    def coefficient(kind: str, form: NormalForm) -> Sought:
+        return Sought(kind, partial(_exact, form), partial(_inside, kind), partial(_few_digits, form))
 
     if condition == FOLD:
         yield coefficient("cusp", _quadratic)
@@ -138,7 +138,7 @@ def _resonances(half: bool) -> list[tuple[str, float]]:
     cosines = (
         ((1.0, -1.0), (0.0,), (0.5, -0.5), (root, -root)) if half else ((1.0,), (-1.0,), (-0.5,), (0.0,))
     )
-    return [(f"resonance-1-{n}", c) for n, both in enumerate(cosines, 1) for c in both]
+    return [(f"resonance-1-{n}", c) for n, pair in enumerate(cosines, 1) for c in pair]
 
 
 def borders(locus: LocusProblem) -> Iterator[Sought]:

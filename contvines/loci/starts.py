@@ -93,8 +93,8 @@ def candidate_of(
     kind = condition_of(point, kinds) if of_own_kind(point) else None
     point = regular_side(point) if kind is None else point
     q = point.attached.parameters[over]
-    about = point.attached, point.kind, np.array(point.u), float(point.value), q, point.label
-    start = Candidate(*about, point.margin_index or 0, kind)
+    fields = point.attached, point.kind, np.array(point.u), float(point.value), q, point.label
+    start = Candidate(*fields, point.margin_index or 0, kind)
     return with_suited_period(start, point) if suited and point.kind == "homoclinic" else start
 
 
@@ -145,8 +145,8 @@ def first_point(
     found = engine.start(U, float(q))
     if found is None:
         return engine, None
-    there, here = engine.join(found.u, found.p), engine.join(U, q)
-    gap = np.abs(there - here) / (engine.scale + np.abs(here))
+    solution, guess = engine.join(found.u, found.p), engine.join(U, q)
+    gap = np.abs(solution - guess) / (engine.scale + np.abs(guess))
     return engine, found if gap.max() < VANISHING.loose else None
 
 
@@ -156,12 +156,12 @@ def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
     Some margins jump at a border (the time to a slip where a stick vanishes), others only touch zero (the distance from a wall where the speed of an
     impact on it vanishes).
     """
-    engine = _about(problem, p)
-    here = engine.start(u, p)
-    if here is None:
+    engine = _engine_near(problem, p)
+    middle = engine.start(u, p)
+    if middle is None:
         return index
-    around = [engine.beside(here, step) for step in (VANISHING.beside, -VANISHING.beside)]
-    margins = [engine.margins(point.row) for point in (here, *around) if point is not None]
+    around = [engine.beside(middle, step) for step in (VANISHING.beside, -VANISHING.beside)]
+    margins = [engine.margins(point.row) for point in (middle, *around) if point is not None]
     if len(margins) < 3:
         return index
     with np.errstate(invalid="ignore"):
@@ -174,7 +174,7 @@ def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
     return int(np.where(smooth, bent, np.inf).argmin())
 
 
-def _about(problem: Problem, p: float) -> Engine:
+def _engine_near(problem: Problem, p: float) -> Engine:
     """Return an engine for single solutions near a value of the parameter."""
     wide = 1.0 + abs(p)
     return Engine(problem, (p - wide, p + wide), Settings())
@@ -206,7 +206,7 @@ def regular_side(point: SpecialPoint) -> SpecialPoint:
     outward = -point.tangent if point.index == 0 else point.tangent
     for seed in problem.beyond(replace(point, tangent=outward)):
         other = seed.problem
-        solved = _about(other, p).at_value(np.asarray(seed.u, dtype=float), p)
+        solved = _engine_near(other, p).at_value(np.asarray(seed.u, dtype=float), p)
         if solved is None or singularity(other, solved.u, p) < VANISHING.singular:
             continue
         zero = np.flatnonzero(np.abs(Linearisation(other).at(solved.u, p).margins) < VANISHING.margin)
@@ -291,7 +291,7 @@ def _with_period(problem: CycleProblem, u: np.ndarray, p: float, period: float) 
     """Solve for the cycle of a given period near a guess on its mesh; None if Newton's method fails."""
     border = np.zeros(problem.dimension + 1)
     border[problem.period_place] = 1.0
-    return _about(problem, p).solve(u, p, border, period)
+    return _engine_near(problem, p).solve(u, p, border, period)
 
 
 def with_suited_period(start: Candidate, point: SpecialPoint) -> Candidate:
@@ -317,8 +317,8 @@ def limit_of(problem: CycleProblem, u: np.ndarray, p: float) -> InfinitePeriod |
     found = _with_period(problem, u, p, float(u[problem.period_place]))
     if found is None:
         return None
-    about = "", "homoclinic", "", found.p, problem.parameter
-    return infinite_period(problem, SpecialPoint(*about, found.u, found.tangent, np.zeros(0)))
+    fields = "", "homoclinic", "", found.p, problem.parameter
+    return infinite_period(problem, SpecialPoint(*fields, found.u, found.tangent, np.zeros(0)))
 
 
 def _waiting(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> np.ndarray:

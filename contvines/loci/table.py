@@ -77,17 +77,17 @@ def _tables(chart: Chart) -> list[Table]:
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
     at = _figures(chart)
 
-    def across(locus: Locus, which: int) -> str:
-        ends = locus.values[:, which].min(), locus.values[:, which].max()
-        return "..".join(map(at[which], ends))
+    def range_text(locus: Locus, axis: int) -> str:
+        ends = locus.values[:, axis].min(), locus.values[:, axis].max()
+        return "..".join(map(at[axis], ends))
 
     loci = [
         (
             locus.label,
             locus.sort + _realness(locus),
             _word(locus),
-            across(locus, 1),
-            across(locus, 0),
+            range_text(locus, 1),
+            range_text(locus, 0),
             str(len(locus)),
             "closed" if locus.closed else "; ".join(dict.fromkeys(locus.ended)),
         )
@@ -136,17 +136,17 @@ def _stable(region: Region, at: Sequence[Callable[[float], str]]) -> str:
             text += f" (per period {low} to {high}, mean {mean})"
     if not region.others:
         return text
-    apart = [
+    others = [
         f"{', '.join(map(short_word, words)) or '-'} at {at[1](place[1])}, {at[0](place[0])}"
         for place, words in region.others
     ]
-    return f"{text}; elsewhere in the region: {'; '.join(apart)}"
+    return f"{text}; elsewhere in the region: {'; '.join(others)}"
 
 
 def _word(locus: Locus) -> str:
     """The word of a locus's motion; empty if solutions have no words."""
-    about = locus.branch.description
-    return "" if about.get("word") is None else motion_name(about.get("problem", about))
+    data = locus.branch.description
+    return "" if data.get("word") is None else motion_name(data.get("problem", data))
 
 
 def _realness(locus: Locus) -> str:
@@ -184,8 +184,8 @@ def chart_summary(chart: Chart, width: int | None = None) -> str:
     for each in (loci, points):
         for kind, count in Counter(kind for kind, _ in each).most_common():
             values = np.concatenate([values for own, values in each if own == kind])
-            across = (spread([values[:, k].min(), values[:, k].max()], number[k]) for k in (1, 0))
-            rows.append((kind, str(count), *across))
+            ranges = (spread([values[:, k].min(), values[:, k].max()], number[k]) for k in (1, 0))
+            rows.append((kind, str(count), *ranges))
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
     lines = [title(chart), "", *Table(("loci and points", "number", q, p), rows).lines(width)]
     if chart.regions:

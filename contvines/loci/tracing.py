@@ -102,7 +102,7 @@ def locus(
     limits = (-np.inf, np.inf) if bounds is None else check_interval(bounds)
     own_kinds = tuple(kind for kind in checked(kinds) if BY_NAME.get(kind.name) is not kind)
     if isinstance(point, PlanePoint):
-        start = _beside(point, over, within, limits)
+        start = _homoclinic_near(point, over, within, limits)
     else:
         check_start(point, over, within)
         start = candidate_of(point, over, own_kinds, suited=period is None)
@@ -126,7 +126,7 @@ def locus(
     return found
 
 
-def _beside(point: PlanePoint, over: str, within: Interval, bounds: Interval) -> Candidate:
+def _homoclinic_near(point: PlanePoint, over: str, within: Interval, bounds: Interval) -> Candidate:
     """The homoclinic orbit near a Bogdanov-Takens point of a flow, as a start."""
     if point.problem is None:
         raise ValueError(without_problem(point.label))
@@ -286,11 +286,11 @@ class BothSides:
     def _vanishes(self, half: HalfBranch) -> bool:
         return becoming(half, self.engine.within)[1] is not None
 
-    def _halves(self, detector: Detector, start: Solved, known: Container[str]) -> dict[str, HalfBranch]:
+    def _halves(self, detector: Detector, start: Solved, done: Container[str]) -> dict[str, HalfBranch]:
         turned = start._replace(tangent=-start.tangent, sign=-start.sign)
         found: dict[str, HalfBranch] = {}
         for side, first in (("ahead", start), ("back", turned)):
-            if side not in known:
+            if side not in done:
                 found[side] = self._side(detector, first, side)
                 if found[side].status == Status.CLOSED:
                     break
@@ -340,17 +340,17 @@ def becoming(half: HalfBranch, within: Interval) -> tuple[str, PlanePoint | None
     points = bare_points(*half.joined()[:3])
     (u, p), q = problem.split(points[-1].u), points[-1].p
     if isinstance(problem.base, Adaptive):
-        end, what = vanishing(problem, points, within), "an equilibrium"
+        end, name = vanishing(problem, points, within), "an equilibrium"
         if end is None:
             return "", None
     else:
-        met = becomes(problem, Place(u, float(p), q))
-        if met is None:
+        simpler = becomes(problem, Place(u, float(p), q))
+        if simpler is None:
             return "", None
-        what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
+        name = "a shorter one, run twice" if simpler.kind == "period-doubling" else "symmetric"
         end = beginning(problem, points[-1], within)
     p, q, digits = (float(p), q, 7) if end is None else (*end.value, 10)
-    return f"the motion becomes {what}, at {_place(half, p, q, digits)}", end
+    return f"the motion becomes {name}, at {_place(half, p, q, digits)}", end
 
 
 def sentence(half: HalfBranch) -> str:
@@ -358,9 +358,9 @@ def sentence(half: HalfBranch) -> str:
     problem = locus_of(half)
     border = border_of(half)
     if half.events and half.events[-1][1].role is Role.MEETING:
-        met, at = half.events[-1][1], half.events[-1][1].point
-        what = "an equilibrium" if met.kind == "hopf" else "a cycle of half the period"
-        return f"the cycle becomes {what}, at {_place(half, float(problem.split(at.u)[1]), at.p)}"
+        event, at = half.events[-1][1], half.events[-1][1].point
+        name = "an equilibrium" if event.kind == "hopf" else "a cycle of half the period"
+        return f"the cycle becomes {name}, at {_place(half, float(problem.split(at.u)[1]), at.p)}"
     if border is None:
         return half.status.sentence(problem.over, half.end)
     kind, p, q = problem.margin_kind(border.index), float(problem.split(border.point.u)[1]), border.point.p

@@ -58,19 +58,15 @@ def along_line(
     """
     size = float(np.abs(x).max())
     if size == 0.0:
-        jacobian = jacobians(u[None, :])
-        return (
-            None
-            if jacobian is None
-            else Line(np.zeros_like(jacobian[0]), np.zeros_like(jacobian[0]), 0.0, 0.0)
-        )
+        matrix = jacobians(u[None, :])
+        return None if matrix is None else Line(np.zeros_like(matrix[0]), np.zeros_like(matrix[0]), 0.0, 0.0)
 
     def samples(radius: float, count: int) -> np.ndarray | None:
         return jacobians(u + radius * chebyshev_nodes(count)[:, None] * x)
 
     def largest() -> float:
-        jacobian = jacobians(u[None, :])
-        return np.inf if jacobian is None else float(np.abs(jacobian).max())
+        matrix = jacobians(u[None, :])
+        return np.inf if matrix is None else float(np.abs(matrix).max())
 
     radius = RADIUS * scale / size
     if rough:
