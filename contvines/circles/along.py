@@ -180,18 +180,18 @@ def _crossing(point: SpecialPoint) -> tuple[complex, float]:
         distance = np.abs(np.abs(upper) - 1.0) if near is None else np.abs(upper - near)
         return complex(upper[np.argmin(distance)]) if len(upper) and distance.min() < 0.1 else None
 
-    here = critical(p, None)
-    if here is None:
+    multiplier = critical(p, None)
+    if multiplier is None:
         raise ValueError(f"{point.label} has no complex pair of multipliers on the unit circle")
     for step in CIRCLES.crossing:
         rates = []
         for width in (step * unit, 0.5 * (step * unit)):
-            above, below = critical(p + width, here), critical(p - width, here)
+            above, below = critical(p + width, multiplier), critical(p - width, multiplier)
             if above is None or below is None:
                 break
             rates.append(np.log(abs(above / below)) / (2.0 * width))
         if len(rates) == 2 and abs(rates[1] - rates[0]) <= 0.02 * abs(rates[1]):
-            return here, float((4.0 * rates[1] - rates[0]) / 3.0)
+            return multiplier, float((4.0 * rates[1] - rates[0]) / 3.0)
     raise ValueError(f"{point.label}: its cycle cannot be followed to both sides")
 
 
@@ -294,10 +294,10 @@ class Family:
 
     def _broken(self, last: Curve, torn: bool) -> str:
         """Sentence why circles end after the last one."""
-        at, born = f"near {self.name} = {last.value:.8g}", self.birth.rotation
-        if abs(last.rotation) < LINGERS * abs(born):
+        at, at_birth = f"near {self.name} = {last.value:.8g}", self.birth.rotation
+        if abs(last.rotation) < LINGERS * abs(at_birth):
             return (
-                f"ends {at}, where its turns take {abs(born / last.rotation):.3g} times as long as at its birth: "
+                f"ends {at}, where its turns take {abs(at_birth / last.rotation):.3g} times as long as at its birth: "
                 "the circle comes close to another cycle, beside which the motion lingers"
             )
         n, q = min(
@@ -312,8 +312,8 @@ class Family:
                 f"ends {at}: motions from points a little outside of the circle do not return, or the points are impossible states (at the section, "
                 "the motion is next to a wall)"
             )
-        why = "it is no longer smooth" if torn else "it cannot be followed any further"
-        return f"the circle breaks {at}: {why}"
+        reason = "it is no longer smooth" if torn else "it cannot be followed any further"
+        return f"the circle breaks {at}: {reason}"
 
     def _larger(self, amplitude: float, count: int) -> Curve:
         """Predict the next circle from the last two: points linear in the amplitude, rotation and parameter linear in its square."""
@@ -329,15 +329,15 @@ class Family:
 
     def _next(self, before: Curve, last: Curve, step: float) -> tuple[Curve, Condition]:
         """Predict the next circle in the direction of the last change; return it with the condition of the plane perpendicular to this direction."""
-        here, there = (
+        current, previous = (
             np.array([first_harmonic(curve, self.birth.frame).real, curve.rotation, curve.value])
             for curve in (last, before)
         )
-        sizes = np.abs(here - (0.0, 0.0, self.birth.p))
-        moved = (here - there) / sizes
+        sizes = np.abs(current - (0.0, 0.0, self.birth.p))
+        moved = (current - previous) / sizes
         share = step / float(np.linalg.norm(moved))
         a, b, c = (moved / np.linalg.norm(moved) / sizes).tolist()
-        target = float(np.dot((a, b, c), here)) + step
+        target = float(np.dot((a, b, c), current)) + step
         guess = last.beyond(before.finer(len(last.points)), share, share)
         return guess, Condition((a, b, c), target)
 

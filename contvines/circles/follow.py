@@ -79,8 +79,8 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     largest = REACH * birth.frame.size if to is None else birth.amplitude(to)
     family = Family(section, birth, largest, to, side, count, point.parameter)
     ended, found = family.follow(), family.found
-    about = section(point.value)
-    made = tuple(_circle(section, curve, birth) for curve in found)
+    at_point = section(point.value)
+    solved = tuple(_circle(section, curve, birth) for curve in found)
     beyond = _beyond(section, found, birth) if found else {}
     return Circles(
         point.label,
@@ -89,9 +89,9 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         birth.rotation,
         birth.coefficient,
         birth.growth,
-        about.names,
+        at_point.names,
         birth.centre,
-        made,
+        solved,
         ended,
         beyond,
         notation_of(point.problem),
@@ -101,12 +101,12 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
 # ---------------------------------------------------------------------- comparison with simulations
 def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> Circle:
     """A circle as data, with its replay, stability and simulated rotation number."""
-    here = section(curve.value)
+    there = section(curve.value)
     centre = curve.points.mean(axis=0)
     radius = float(np.sqrt(np.mean(np.sum((curve.points - centre) ** 2, axis=1))))
-    replay = between(here, curve)
-    stable = _attracts(here, curve, birth, centre)
-    simulated = _simulated(here, curve, birth, centre, radius) if stable else None
+    replay = between(there, curve)
+    stable = _attracts(there, curve, birth, centre)
+    simulated = _simulated(there, curve, birth, centre, radius) if stable else None
     # the displacement decreased at first, but the simulation leaves the circle
     if stable and simulated is None:
         stable = None
@@ -127,25 +127,25 @@ def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> 
 
 
 def _displacements(
-    here: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray
+    section: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray
 ) -> Iterator[float]:
     """Generate, for each return, log(distance of the motion from the centre / distance of the circle at the same angle), in the critical plane."""
     own = (curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - centre) @ birth.frame.left.conj()
     angles = np.unwrap(np.angle(own))
     if angles[-1] < angles[0]:
         own, angles = own[::-1], angles[::-1]
-    while np.isfinite(x := here.step(x)).all():
+    while np.isfinite(x := section.step(x)).all():
         z = complex((x - centre) @ birth.frame.left.conj())
         place = angles[0] + (np.angle(z) - angles[0]) % (2.0 * np.pi)
         yield float(np.log(max(abs(z), TINY)) - np.log(np.interp(place, angles, np.abs(own))))
 
 
-def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
+def _attracts(section: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
     """Whether a motion that is displaced outwards returns to the circle; None if that is not clear."""
     rate = 2.0 * abs(birth.growth * (curve.value - birth.p))
-    count = int(min(_returns(here, PATIENCE), max(200, 2.0 / max(rate, 1.0 / PATIENCE))))
+    count = int(min(_returns(section, PATIENCE), max(200, 2.0 / max(rate, 1.0 / PATIENCE))))
     start = curve.points[0] + CIRCLES.displaced * (curve.points[0] - centre)
-    distances = _displacements(here, curve, birth, centre, start)
+    distances = _displacements(section, curve, birth, centre, start)
     logs = np.empty(0)
     returns = int(min(count, max(LOOK, ROUNDS / _slowest(curve.rotation))))
     while True:
@@ -162,9 +162,9 @@ def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> 
         returns = min(2 * returns, count)
 
 
-def _returns(here: Section, most: int) -> int:
+def _returns(section: Section, most: int) -> int:
     """Most returns of a simulation: `most`, or the section's own limit if its steps are expensive."""
-    return min(most, here.returns_watched) if isinstance(here, Watched) else most
+    return min(most, section.returns_watched) if isinstance(section, Watched) else most
 
 
 def _slowest(rotation: float) -> float:
@@ -173,13 +173,15 @@ def _slowest(rotation: float) -> float:
     return max(min(drifts), 1.0 / PATIENCE)
 
 
-def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float) -> float | None:
+def _simulated(
+    section: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float
+) -> float | None:
     """Rotation number of a simulation on the circle; None if it leaves the circle."""
-    most = _returns(here, RETURNS)
+    most = _returns(section, RETURNS)
     x, z, returns = curve.points[0], np.empty(most, dtype=complex), FIRST
     outline = curve.at(np.linspace(0.0, 2.0 * np.pi, 721))
     for i in range(most):
-        x = here.step(x)
+        x = section.step(x)
         z[i] = (x - centre) @ birth.frame.left.conj()
         if i + 1 < min(returns, most):
             continue

@@ -199,10 +199,10 @@ def _differences(
     unknown = np.flatnonzero(~np.isfinite(by_state).all(axis=(1, 2)))
     if not len(unknown):
         return
-    here, beside, before = section(p), section(p + steps[1]), section(p - steps[1])
+    middle, after, before = section(p), section(p + steps[1]), section(p - steps[1])
     for j in unknown:
-        by_state[j] = slopes(here, points[j], steps[0])
-        by_value[j] = (beside.step(points[j]) - before.step(points[j])) / (2.0 * steps[1])
+        by_state[j] = slopes(middle, points[j], steps[0])
+        by_value[j] = (after.step(points[j]) - before.step(points[j])) / (2.0 * steps[1])
 
 
 def solve(
@@ -240,8 +240,8 @@ def solve(
         turned = np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ fourier
         shifted = np.real(turned @ points)
         z = complex(first @ (points @ frame.left.conj()))
-        apart = normal[0] * z.real + normal[1] * rho + normal[2] * p - target
-        ends = np.array([z.imag, apart / length])
+        off_plane = normal[0] * z.real + normal[1] * rho + normal[2] * p - target
+        ends = np.array([z.imag, off_plane / length])
         sides = np.concatenate([(images - shifted).reshape(-1), ends])
         if not np.isfinite(sides).all():
             return None

@@ -102,10 +102,10 @@ class Basins:
         most : int, optional
             Largest number of letters of the name.
         """
-        about, state = self.attractors[k], self.states[k] if self.states else None
-        name = short_word(about.name) if most is None else short_word(about.name, most)
-        alike = [a for a in self.attractors if (a.name, a.periods) == (about.name, about.periods)]
-        if state is None or len(alike) < 2:
+        attractor, state = self.attractors[k], self.states[k] if self.states else None
+        name = short_word(attractor.name) if most is None else short_word(attractor.name, most)
+        namesakes = [a for a in self.attractors if (a.name, a.periods) == (attractor.name, attractor.periods)]
+        if state is None or len(namesakes) < 2:
             return name
         places = (
             f"{axis} = {figures(float(self.shown(axis, x)))} {self.gauges.get(axis, (1.0, ''))[1]}".rstrip()
@@ -144,7 +144,7 @@ class Basins:
         ValueError
             If all points reach one motion, or the plane has too few points.
         """
-        inside = [k for k, about in enumerate(self.attractors) if about.kind == "impossible"]
+        inside = [k for k, attractor in enumerate(self.attractors) if attractor.kind == "impossible"]
         kinds = np.where(np.isin(self.index, inside), -1, 2 * self.index + self.mirrored)
         distances, shares = [], []
         d = 1
@@ -253,34 +253,34 @@ def basins(
     names = population.names
     if plane is not None and len(plane) != 2:
         raise ValueError(f"plane = {plane!r}: give two names of {', '.join(names)}")
-    across, up = (str(n) for n in (plane or (names[1:3] if len(names) > 2 else names[:2])))
+    horizontal, vertical = (str(n) for n in (plane or (names[1:3] if len(names) > 2 else names[:2])))
     given = dict(fixed or {})
     ranges = dict(within or {})
-    for name in (across, up, *given, *ranges):
+    for name in (horizontal, vertical, *given, *ranges):
         if name not in names:
             raise ValueError(f"{name!r} is no coordinate of a start; choose from {', '.join(names)}")
-    if across == up:
+    if horizontal == vertical:
         raise ValueError(
-            f"plane = {across!r}, {up!r}: choose two different coordinates of {', '.join(names)}"
+            f"plane = {horizontal!r}, {vertical!r}: choose two different coordinates of {', '.join(names)}"
         )
     points = population.across if points is None else points
     columns, rows = (points, points) if isinstance(points, int) else points
     if not (columns >= 2 and rows >= 2 and columns * rows <= MOST):
         raise ValueError(f"points = {columns} x {rows}: give at least 2 each way, and at most {MOST} in all")
     box = population.box(float(at))
-    limits = {name: ranges.get(name, tuple(box[names.index(name)])) for name in (across, up)}
+    limits = {name: ranges.get(name, tuple(box[names.index(name)])) for name in (horizontal, vertical)}
     for name, (low, high) in limits.items():
         if not (np.isfinite(low) and np.isfinite(high) and low < high):
             raise ValueError(
                 f"within: {name} = [{low:g}, {high:g}] is no interval; give the lower number first"
             )
-    x = _cells(*limits[across], columns)
-    y = _cells(*limits[up], rows)
+    x = _cells(*limits[horizontal], columns)
+    y = _cells(*limits[vertical], rows)
     starts = np.zeros((rows * columns, len(names)))
     for name, value in given.items():
         starts[:, names.index(name)] = value
-    starts[:, names.index(across)] = np.tile(x, rows)
-    starts[:, names.index(up)] = np.repeat(y, columns)
+    starts[:, names.index(horizontal)] = np.tile(x, rows)
+    starts[:, names.index(vertical)] = np.repeat(y, columns)
     curves: list[Manifold] = []
     if saddles is not None:
         low, high = saddles.within
@@ -289,10 +289,10 @@ def basins(
                 f"at = {at:.10g} lies outside the interval of saddles, {low:.10g} to {high:.10g}; give a value inside it, "
                 f"or a graph over a wider interval"
             )
-        others = {name: given.get(name, 0.0) for name in names if name not in (across, up)}
-        check_plane(saddles, population.parameter, (across, up), others)
+        others = {name: given.get(name, 0.0) for name in names if name not in (horizontal, vertical)}
+        check_plane(saddles, population.parameter, (horizontal, vertical), others)
         most = PER_START * max(population.across**2, columns * rows)
-        window = np.array([limits[across], limits[up]])
+        window = np.array([limits[horizontal], limits[vertical]])
         curves = stable_manifolds(saddles, float(at), window, most=most)
     motions, index, mirrored = population.settle(starts, float(at))
     attractors = attractors_of(motions, index, mirrored, float(at))
@@ -300,10 +300,10 @@ def basins(
     return Basins(
         population.parameter,
         float(at),
-        (across, up),
+        (horizontal, vertical),
         x,
         y,
-        {name: float(given.get(name, 0.0)) for name in names if name not in (across, up)},
+        {name: float(given.get(name, 0.0)) for name in names if name not in (horizontal, vertical)},
         index.reshape(shape),
         mirrored.reshape(shape),
         attractors,
@@ -312,7 +312,7 @@ def basins(
         getattr(population, "leftward", ""),
         getattr(population, "units", {}).get(population.parameter, ""),
         population.gauges(names, float(at)) if isinstance(population, Gauged) else {},
-        [_on_plane(motion, names, (across, up), float(at)) for motion in motions],
+        [_on_plane(motion, names, (horizontal, vertical), float(at)) for motion in motions],
     )
 
 
@@ -358,15 +358,15 @@ def page(basins: Basins) -> str:
 
 def _shares(basins: Basins) -> Table:
     rows = []
-    for k, about in enumerate(basins.attractors):
+    for k, attractor in enumerate(basins.attractors):
         low, high = basins.interval(k)
         rows.append(
             (
                 basins.told(k),
-                f"k={about.periods}" if about.periods else "",
-                f"{about.share:.2%}",
+                f"k={attractor.periods}" if attractor.periods else "",
+                f"{attractor.share:.2%}",
                 f"{low:.2%} to {high:.2%}",
-                f"{about.mirror_share:.2%}" if about.mirror_share else "",
+                f"{attractor.mirror_share:.2%}" if attractor.mirror_share else "",
             )
         )
     head = ("motion", "periods", "share", "95 % interval", "of it the mirror image")
@@ -375,8 +375,8 @@ def _shares(basins: Basins) -> Table:
 
 
 def _title(basins: Basins) -> str:
-    across, up = basins.axes
-    return f"{basins.index.size} starts in the plane {across}, {up} at {basins.parameter} = {figures(basins.value)} {basins.unit}".rstrip()
+    horizontal, vertical = basins.axes
+    return f"{basins.index.size} starts in the plane {horizontal}, {vertical} at {basins.parameter} = {figures(basins.value)} {basins.unit}".rstrip()
 
 
 def _boundary(basins: Basins) -> list[str]:

@@ -116,37 +116,37 @@ def atlas(
         raise ValueError(
             f"within = None: give the interval of {population.parameter}, for example within=(0.2, 1.3)"
         )
-    where = check_values(values, within)
+    given_values = check_values(values, within)
     if starts is None:
         starts = max(2 * FEW, round(STARTS / population.price))
     budget = BUDGET if budget is None else budget
     _check_whole("starts", starts, 1)
-    scan = -(-len(where) * starts // FEW) if scan is None else scan
+    scan = -(-len(given_values) * starts // FEW) if scan is None else scan
     for name, value, least in (("seed", seed, 0), ("budget", budget, 1), ("scan", scan, 0)):
         _check_whole(name, value, least)
-    asked = {"values": len(where), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
+    asked = {"values": len(given_values), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
 
-    def begun(kept: Journal, tell: Tell | None) -> tuple[Graph, Callable[[], None]]:
-        about = dict(population.about), within, depth, virtual, user_functions, kept, tell, settings
-        run = new_run(population.parameter, *about, kinds=kinds)
+    def start(stored: Journal, report: Tell | None) -> tuple[Graph, Callable[[], None]]:
+        arguments = dict(population.about), within, depth, virtual, user_functions, stored, report, settings
+        run = new_run(population.parameter, *arguments, kinds=kinds)
         run.graph.settings |= asked
         run.narrowest = ATLAS.narrow * (run.graph.within[1] - run.graph.within[0])
-        return run.graph, partial(_work, _Looking(run, population, seed, budget), where, starts, scan)
+        return run.graph, partial(_work, _Search(run, population, seed, budget), given_values, starts, scan)
 
-    return carried_out(begun, journal, progress, interrupt)
+    return carried_out(start, journal, progress, interrupt)
 
 
-def _work(looking: _Looking, where: list[float], starts: int, scan: int) -> None:
-    """Run the steps of an atlas one after another; `where` are the given values."""
+def _work(looking: _Search, values: list[float], starts: int, scan: int) -> None:
+    """Run the steps of an atlas one after another; `values` are the given values."""
     if scan:
         looking.effort.expect(SCATTERED, scan)
-        looking.effort.expect(CYCLES, len(where))
-    looking.given(where, starts)
+        looking.effort.expect(CYCLES, len(values))
+    looking.given(values, starts)
     if scan:
         looking.between(scan)
         looking.everywhere(scan)
         looking.past_ends(FEW * scan)
-        looking.for_cycles(where)
+        looking.for_cycles(values)
         looking.past_ends(FEW * scan)
         looking.between(scan)
         looking.unbranched(scan)
@@ -192,7 +192,7 @@ def check_values(values: int | Sequence[float], within: tuple[float, float]) -> 
     return numbers
 
 
-class _Looking:
+class _Search:
     """State of the search of an atlas: the simulated values, the motions found, and the steps of the search as methods."""
 
     def __init__(self, run: Run, population: Population, seed: int, budget: int) -> None:
@@ -200,33 +200,33 @@ class _Looking:
         self.asked: list[float] = []
         self.found: list[Counted] = []
         self.handover = Handover(run, population)
-        apart = run_apart(run)
-        self.effort = Effort(population, budget, lambda: run.cost + apart.cost)
-        self.windows = Windows(run, population, apart, self.effort)
+        separate = run_apart(run)
+        self.effort = Effort(population, budget, lambda: run.cost + separate.cost)
+        self.windows = Windows(run, population, separate, self.effort)
         self.left: dict[str, int] = {}  # by kind of work, number of pieces that the budget did not allow
         run.over = lambda: self.effort.over
         run.left = lambda: WorkState(*self.effort.left())
 
-    def pieces(self, what: str, things: Sequence[T], least: int = 0) -> Iterator[T]:
+    def pieces(self, kind: str, work: Sequence[T], least: int = 0) -> Iterator[T]:
         """Yield the pieces of one kind of work while the budget lasts, at least the first `least`; count those left out."""
-        self.effort.expect(what, len(things))
-        for k, thing in enumerate(things):
-            if k >= least and self._over(what, len(things) - k):
+        self.effort.expect(kind, len(work))
+        for k, piece in enumerate(work):
+            if k >= least and self._over(kind, len(work) - k):
                 return
-            with self.effort.piece(what):
-                yield thing
+            with self.effort.piece(kind):
+                yield piece
 
-    def _over(self, what: str, left: int) -> bool:
+    def _over(self, kind: str, left: int) -> bool:
         """Return whether the budget is used up; if so, record that `left` pieces of this kind of work are left out."""
         if self.effort.over:
-            self.left[what] = left
+            self.left[kind] = left
         return self.effort.over
 
     def given(self, values: Sequence[float], starts: int) -> None:
         """Simulate starts at the given values, then trace the motions that they reach."""
         self.effort.expect(TRACED, len(values))
-        met = [self.simulated(p, starts, self.seed) for p in self.pieces(GIVEN, values, 1)]
-        for counted in self.pieces(TRACED, met, 1):
+        found = [self.simulated(p, starts, self.seed) for p in self.pieces(GIVEN, values, 1)]
+        for counted in self.pieces(TRACED, found, 1):
             join(self.run, counted)
 
     def simulated(self, p: float, starts: int, seed: int) -> list[Counted]:
@@ -257,10 +257,10 @@ class _Looking:
         """Simulate at up to `most` values near to which a kind of motion without a branch begins or ends."""
 
         def places(asked: Sequence[float], left: int) -> list[float]:
-            met: dict[str, list[float]] = {}
+            found: dict[str, list[float]] = {}
             for counted in self.found:
-                met.setdefault(counted.attractor.kind, []).append(counted.attractor.value)
-            return unresolved(met, asked, self.run.graph.within, left)
+                found.setdefault(counted.attractor.kind, []).append(counted.attractor.value)
+            return unresolved(found, asked, self.run.graph.within, left)
 
         self._few(places, most)
 
@@ -307,6 +307,6 @@ class _Looking:
         graph.settings |= {"work": effort.spent, "unknown": [list(p) for p in unknown(graph, self.asked)]}
         if self.left:
             graph.settings["left"] = dict(self.left)
-            left = ", ".join(f"{what} ({count})" for what, count in self.left.items())
+            left = ", ".join(f"{kind} ({count})" for kind, count in self.left.items())
             stopped = f"stopped at budget = {effort.budget}; left out are {left}: raise budget to look on"
             graph.message, graph.complete = "; ".join(filter(None, (graph.message, stopped))), False

@@ -117,17 +117,19 @@ def _settled(
         attractors = attractors_of(motions, index, mirrored, p)
         return [Counted(a, m.problem, m.u, m.state) for a, m in zip(attractors, motions, strict=True)]
 
-    def recalled(known: Mapping[str, Any]) -> list[Counted] | None:
+    def recalled(record: Mapping[str, Any]) -> list[Counted] | None:
         """Return the recorded motions; None if a problem needs user functions that are not available."""
         found = []
-        for k, description in enumerate(known["problems"]):
-            own = {name: known[name][k] for name in ("word", "periods", "kind", "starts")}
-            own |= {name: float(known[name][k]) for name in MEASURED}
-            u = known.get(f"u{k}")
+        for k, description in enumerate(record["problems"]):
+            own = {name: record[name][k] for name in ("word", "periods", "kind", "starts")}
+            own |= {name: float(record[name][k]) for name in MEASURED}
+            u = record.get(f"u{k}")
             problem = None if description is None or u is None else population.restored(description, u, p)
             if description is not None and problem is None:
                 return None
-            found.append(Counted(Attractor(float(p), branch=None, **own), problem, u, known.get(f"state{k}")))
+            found.append(
+                Counted(Attractor(float(p), branch=None, **own), problem, u, record.get(f"state{k}"))
+            )
         return found
 
     return remembered(population, key, journal, simulated, _record, recalled)
@@ -175,10 +177,10 @@ def remembered(
     recall : callable
         Returns the result of a record; None if it cannot be rebuilt.
     """
-    known = journal.recall(key)
-    found = None if known is None else recall(known)
-    if known is not None and found is not None:
-        population.work += float(known.get("work", 0.0))
+    record_found = journal.recall(key)
+    found = None if record_found is None else recall(record_found)
+    if record_found is not None and found is not None:
+        population.work += float(record_found.get("work", 0.0))
         return found
     before = population.work
     found = make()
@@ -204,8 +206,8 @@ def locate(run: Run, counted: Counted) -> str | None:
     """Return the label of the branch on which a motion lies (to solver accuracy); None if it lies on none."""
     if counted.problem is None:
         return None
-    known = run.register.find(counted.problem, np.asarray(counted.u), counted.attractor.value)
-    return None if known is None else known.label
+    branch = run.register.find(counted.problem, np.asarray(counted.u), counted.attractor.value)
+    return None if branch is None else branch.label
 
 
 def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
@@ -293,9 +295,9 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
     values, starts = population.brief
     for t in (np.arange(values) + 0.5) / values:
         for counted in census(population, float(low + (high - low) * t), starts, 0, run.journal):
-            about = counted.attractor
-            if about.kind not in ("slow", "escaped", "stopped") and locate(run, counted) is None:
-                found.append(about)
+            attractor = counted.attractor
+            if attractor.kind not in ("slow", "escaped", "stopped") and locate(run, counted) is None:
+                found.append(attractor)
     graph.missing, graph.looked = found, True
     return found
 
@@ -310,17 +312,17 @@ def missing_text(graph: Graph, study: str) -> str:
         Name of the study's file.
     """
     best: dict[tuple[str, int, str], Attractor] = {}
-    for about in sorted(graph.missing, key=lambda about: -about.share):
-        best.setdefault((about.word, about.periods, about.kind), about)
+    for attractor in sorted(graph.missing, key=lambda attractor: -attractor.share):
+        best.setdefault((attractor.word, attractor.periods, attractor.kind), attractor)
     if not best:
         return ""
     names = [
-        f"{short_word(about.name)} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})"
-        for about in list(best.values())[:3]
+        f"{short_word(attractor.name)} ({attractor.share:.0%} of starts at {graph.parameter} = {attractor.value:.6g})"
+        for attractor in list(best.values())[:3]
     ]
     more = f" and {len(best) - 3} more" if len(best) > 3 else ""
     found = f"simulation also finds {', '.join(names)}{more}, "
-    if all(about.kind in UNBRANCHED for about in best.values()):
+    if all(attractor.kind in UNBRANCHED for attractor in best.values()):
         return f"{found}which no branch can hold"
     return (
         f"{found}not on any branch; run contvines atlas {study} to add {'it' if len(best) == 1 else 'them'}"

@@ -51,10 +51,10 @@ class Effort:
     @contextmanager
     def piece(self, search: str) -> Iterator[None]:
         """Measure the time of one piece of a kind of work, as a context manager."""
-        begun = monotonic()
+        began = monotonic()
         yield
         count, seconds = self._took.get(search, (0, 0.0))
-        self._took[search] = count + 1, seconds + monotonic() - begun
+        self._took[search] = count + 1, seconds + monotonic() - began
         self.waiting[search] = max(self.waiting.get(search, 0) - 1, 0)
 
     def left(self) -> tuple[float, int, int, float]:
@@ -69,7 +69,7 @@ class Effort:
         seconds : float
             Estimated time that the known pieces left, or the rest of the budget, will take; nan before the first piece is finished.
         """
-        done, known = sum(count for count, _ in self._took.values()), sum(self.waiting.values())
+        done, waiting = sum(count for count, _ in self._took.values()), sum(self.waiting.values())
         share, seconds = min(self.spent / self.budget, 1.0), float("nan")
         if done:
             mean = sum(seconds for _, seconds in self._took.values()) / done
@@ -77,4 +77,4 @@ class Effort:
             seconds = sum(n * took[search][1] / took[search][0] for search, n in self.waiting.items())
             if share:
                 seconds = min(seconds, (monotonic() - self.started) * (1.0 / share - 1.0))
-        return share, done, done + known, seconds
+        return share, done, done + waiting, seconds

@@ -119,14 +119,14 @@ def erosion(
     ValueError
         If the branch has no stable real motions, or none at a given value.
     """
-    where = _spread(branch, values) if isinstance(values, int) else sorted(float(v) for v in values)
-    if not where:
+    places = _spread(branch, values) if isinstance(values, int) else sorted(float(v) for v in values)
+    if not places:
         raise ValueError(f"values = {values!r}: give how many, 1 or more, or a list of values")
-    for value in where:  # check all values before the first simulation
+    for value in places:  # check all values before the first simulation
         stable_at(branch, value)
     word = str(branch.description.get("word", ""))
     found = Erosion(branch.parameter, branch.label, word, notation=notation_of(branch.problem))
-    for value in where:
+    for value in places:
         found.entries.append(
             robustness(branch, value, units=units, directions=directions, starts=starts, seed=seed)
         )

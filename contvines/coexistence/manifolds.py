@@ -227,11 +227,11 @@ def _linear(
         The distance, the unit stable direction, the stable multiplier, and the error of the linear prediction of the first points' images,
         relative to `first`. None if the point is no saddle.
     """
-    jacobian, apart = np.empty((2, 2)), DIFFERENCE * first
+    jacobian, step_size = np.empty((2, 2)), DIFFERENCE * first
     for j in range(2):
         moved = np.zeros(2)
-        moved[j] = apart
-        jacobian[:, j] = (step(place + moved) - step(place - moved)) / (2.0 * apart)
+        moved[j] = step_size
+        jacobian[:, j] = (step(place + moved) - step(place - moved)) / (2.0 * step_size)
     if not np.all(np.isfinite(jacobian)):
         return None
     values, vectors = np.linalg.eig(jacobian)
@@ -241,8 +241,8 @@ def _linear(
     slow, ray = float(np.real(values[k])), np.real(vectors[:, k])
     ray = ray / np.linalg.norm(ray)
     images = [step(place + side * first * ray) - place - side * slow * first * ray for side in (1.0, -1.0)]
-    off = max(float(np.linalg.norm(image)) for image in images) / first
-    return first, ray, slow, off if np.isfinite(off) else np.inf
+    error = max(float(np.linalg.norm(image)) for image in images) / first
+    return first, ray, slow, error if np.isfinite(error) else np.inf
 
 
 class _Half:
@@ -280,9 +280,9 @@ class _Half:
     def grown(self, more: Callable[[], bool]) -> list[tuple[np.ndarray, str]]:
         """Grow the curve while ``more()`` is true; return its pieces and how each ends."""
         self.more = more
-        ends = [self._on(self.length, TURN)]
-        while ends[-1] == "leaves" and self._through():
-            ended = self._on(MANIFOLDS.corner * self.size, INWARD)
+        ends = [self._grow(self.length, TURN)]
+        while ends[-1] == "leaves" and self._continue_behind():
+            ended = self._grow(MANIFOLDS.corner * self.size, INWARD)
             if len(self.pieces[-1]) == 1:  # the curve does not leave the wall
                 self.pieces.pop()
                 break
@@ -290,7 +290,7 @@ class _Half:
             ends.append("long" if len(ends) + 1 == PIECES else ended)
         return [(np.array(points), end) for points, end in zip(self.pieces, ends, strict=True)]
 
-    def _on(self, radius: float, widest: float) -> str:
+    def _grow(self, radius: float, widest: float) -> str:
         """Grow the last piece and return how it ends.
 
         Parameters
@@ -303,16 +303,16 @@ class _Half:
         points, size, limits = self.pieces[-1], self.size, self.limits
         while self.length < LENGTH * size and self.more():
             starts, ends = self._segments()
-            known = (starts, ends, self.at)
-            found = next_point(self.image, known, points[-1], self.heading, radius, widest)
+            curve = (starts, ends, self.at)
+            found = next_point(self.image, curve, points[-1], self.heading, radius, widest)
             if found is None and widest == TURN and radius < MANIFOLDS.corner * size:
-                found = next_point(self.image, known, points[-1], self.heading, radius, BENT)
+                found = next_point(self.image, curve, points[-1], self.heading, radius, BENT)
             if found is None:
                 radius *= 0.5
                 if radius < self.smallest:
                     # at the plane's edge or a wall, beyond which no start exists, the curve has left the plane
                     edge = np.abs(points[-1][:, None] - limits).min() < MANIFOLDS.corner * size
-                    at_wall = len(points) > 1 and (edge or self._struck() is not None)
+                    at_wall = len(points) > 1 and (edge or self._reflected() is not None)
                     return "leaves" if at_wall else "breaks"
                 continue
             point, self.at, turn = found
@@ -326,16 +326,16 @@ class _Half:
             widest = TURN
         return "long"
 
-    def _through(self) -> bool:
+    def _continue_behind(self) -> bool:
         """Begin another piece on the other side of an impact; return whether it lies within the plane."""
-        found = self._struck()
+        found = self._reflected()
         if found is None or np.any(found[0] < self.limits[:, 0]) or np.any(found[0] > self.limits[:, 1]):
             return False
         self.pieces.append([found[0]])
         self.heading = found[1]
         return True
 
-    def _struck(self) -> tuple[np.ndarray, np.ndarray] | None:
+    def _reflected(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Return the point at which the curve continues if its last point is at a wall, and the direction away from the wall; otherwise None."""
         return None if self.struck is None else self.struck(self.pieces[-1][-1], MANIFOLDS.corner * self.size)
 
@@ -352,7 +352,7 @@ REFINED = 60  # largest number of iterations for the angle
 
 def next_point(
     image: Callable[[np.ndarray], np.ndarray],
-    known: tuple[np.ndarray, np.ndarray, int],
+    curve: tuple[np.ndarray, np.ndarray, int],
     last: np.ndarray,
     heading: np.ndarray,
     radius: float,
@@ -364,7 +364,7 @@ def next_point(
     ----------
     image : callable
         The section map.
-    known : (starts, ends, at)
+    curve : (starts, ends, at)
         Segments of the known curve, and the number of the segment on which the last point's image lies.
     last, heading : float array (2,)
         The last point and the direction of the last step.
@@ -387,7 +387,7 @@ def next_point(
     def gap(turn: float) -> float:
         """Signed distance of the image of a point of the circle from the curve; 0 if the image lies on it."""
         if turn not in sides:
-            sides[turn] = _beside(*known, image(place(turn)))
+            sides[turn] = _signed_distance(*curve, image(place(turn)))
         value = sides[turn][0]
         return 0.0 if abs(value) < near else value
 
@@ -401,13 +401,15 @@ def next_point(
             turn: float = brentq(gap, low, high, xtol=TINY, maxiter=REFINED, disp=False)  # pyright: ignore[reportAssignmentType]
         except ValueError:  # the image is not finite
             return None
-        off, (_, segment, beyond) = gap(turn), sides[turn]
-        if not beyond and abs(off) <= MANIFOLDS.jump * radius:  # otherwise the map is discontinuous
+        distance, (_, segment, beyond) = gap(turn), sides[turn]
+        if not beyond and abs(distance) <= MANIFOLDS.jump * radius:  # otherwise the map is discontinuous
             return place(turn), segment, abs(turn)
     return None
 
 
-def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int, bool]:
+def _signed_distance(
+    starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray
+) -> tuple[float, int, bool]:
     """Return the signed distance of a point from the known curve, the nearest segment, and whether the point lies beyond the curve's end.
 
     Only segments from number ``at - 2`` on are searched. Beyond the end, the distance is that to the line of the last segment: its sign
@@ -423,7 +425,7 @@ def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) ->
     inside = np.clip(part, 0.0, 1.0)
     gaps = np.linalg.norm(point - (starts + inside[:, None] * along), axis=1)
     k = int(gaps.argmin())
-    across = along[k, 0] * (point - starts[k])[1] - along[k, 1] * (point - starts[k])[0]
+    offset = along[k, 0] * (point - starts[k])[1] - along[k, 1] * (point - starts[k])[0]
     if k == len(gaps) - 1 and part[k] > 1.0:
-        return float(across / np.sqrt(lengths[k])), at, True
-    return float(np.sign(across) * gaps[k]), first + k, False
+        return float(offset / np.sqrt(lengths[k])), at, True
+    return float(np.sign(offset) * gaps[k]), first + k, False

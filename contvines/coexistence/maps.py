@@ -74,14 +74,14 @@ class MapPopulation(StartsInBox):
             left = np.flatnonzero(periods == 0)
             if not left.size:
                 break
-            now = self._advance(step, x[left], transient)
-            first, period = now.copy(), np.zeros(len(left), dtype=int)
+            points = self._advance(step, x[left], transient)
+            first, period = points.copy(), np.zeros(len(left), dtype=int)
             for k in range(1, LONGEST + 1):
-                now = self._advance(step, now, 1)
-                back = (np.abs(now - first).max(axis=1) < MAPS.returned * self.size) & (period == 0)
+                points = self._advance(step, points, 1)
+                back = (np.abs(points - first).max(axis=1) < MAPS.returned * self.size) & (period == 0)
                 period[back] = k
-            period[~np.all(np.isfinite(now), axis=1)] = -1
-            x[left], periods[left] = now, period
+            period[~np.all(np.isfinite(points), axis=1)] = -1
+            x[left], periods[left] = points, period
         return self._sorted(step, x, periods, p)
 
     def _advance(self, step: _Iteration, x: np.ndarray, count: int) -> np.ndarray:
@@ -103,10 +103,10 @@ class MapPopulation(StartsInBox):
             if index[i] >= 0:
                 continue
             if periods[i] < 0:
-                here = periods < 0
+                members = periods < 0
                 motions.append(Motion("escaped"))
             elif periods[i] == 0:
-                here = periods == 0
+                members = periods == 0
                 motions.append(self._wandering(x[i], p))
             else:
                 period = int(periods[i])
@@ -119,16 +119,20 @@ class MapPopulation(StartsInBox):
                 points = solved if solved is not None and near else guess
                 points[np.abs(points) < ZERO * self.size] = 0.0
                 gaps = np.abs(x[:, None, :] - points[None]).max(axis=2).min(axis=1)
-                here = (gaps < MAPS.near * self.size) & (periods == period)
-                same = [k for k, known in cycles.items() if len(known) == period and self._one(points, known)]
+                members = (gaps < MAPS.near * self.size) & (periods == period)
+                same = [
+                    k
+                    for k, earlier in cycles.items()
+                    if len(earlier) == period and self._one(points, earlier)
+                ]
                 if same:  # approached so slowly that the starts stand apart
                     index[i] = same[0]
                     continue
                 cycles[len(motions)] = points
                 problem = self.problem.cycle_through(points, p)
                 motions.append(Motion("periodic", f"{period}-cycle", period, problem, points.ravel()))
-            here[i] = True
-            index[here & (index < 0)] = len(motions) - 1
+            members[i] = True
+            index[members & (index < 0)] = len(motions) - 1
         return motions, index, np.zeros(len(x), dtype=bool)
 
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
@@ -148,7 +152,7 @@ class MapPopulation(StartsInBox):
                     continue
                 free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > MAPS.apart * self.size
                 points = self._solved(run[i : i + period], p)
-                if points is not None and not any(self._one(points, known) for known in cycles):
+                if points is not None and not any(self._one(points, cycle) for cycle in cycles):
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
@@ -163,7 +167,7 @@ class MapPopulation(StartsInBox):
             for period in range(1, EMBEDDED + 1):
                 with np.errstate(all="ignore"):  # far away a map may overflow
                     points = self._solved(np.repeat(start[None], period, axis=0), p, ANYWHERE)
-                if points is None or any(self._one(points, known) for known in cycles):
+                if points is None or any(self._one(points, cycle) for cycle in cycles):
                     continue
                 if np.any(np.all((points >= low) & (points <= high), axis=1)):
                     cycles.append(points)
@@ -195,10 +199,10 @@ class MapPopulation(StartsInBox):
                 return None
         return None
 
-    def _one(self, points: np.ndarray, known: np.ndarray) -> bool:
+    def _one(self, points: np.ndarray, cycle: np.ndarray) -> bool:
         """Whether a cycle equals a known one, or is a known one traversed several times."""
-        gaps = np.abs(known - points[0]).max(axis=1)
-        return len(points) % len(known) == 0 and bool(gaps.min() < MAPS.near * self.size)
+        gaps = np.abs(cycle - points[0]).max(axis=1)
+        return len(points) % len(cycle) == 0 and bool(gaps.min() < MAPS.near * self.size)
 
     def _wandering(self, x: np.ndarray, p: float) -> Motion[Problem]:
         """Classify a motion that does not recur by its Lyapunov exponent, the mean growth of a tangent vector; its error is that of block means."""

@@ -42,11 +42,11 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
     added: list[Branch] = []
     for branch in other.branches.values():
         middle = len(branch) // 2
-        known = run.register.find(
+        match = run.register.find(
             branch.attached, branch.points[middle], float(branch.values[middle]), branch.real
         )
-        called[branch.label] = run.new_label("B") if known is None else known.label
-        if known is None:
+        called[branch.label] = run.new_label("B") if match is None else match.label
+        if match is None:
             added.append(replace(branch, label=called[branch.label]))
             graph.branches[added[-1].label] = added[-1]
             run.register.add(added[-1], run.engine(branch.attached))
@@ -72,11 +72,11 @@ def _special(run: Run, point: SpecialPoint, called: dict[str, str]) -> str:
     """Return the label in the run's graph of an equal special point; if there is none, add the point under a new label."""
     graph = run.graph
     form = point.attached.canonical(point.u, point.value)
-    for known in graph.special.values():
-        near = abs(known.value - point.value) <= run.settings.same * run.unit(point.value)
-        alike = known.kind == point.kind and near and known.problem is not None
-        if alike and same_form(run.form(known), form):
-            return known.label
+    for candidate in graph.special.values():
+        near = abs(candidate.value - point.value) <= run.settings.same * run.unit(point.value)
+        comparable = candidate.kind == point.kind and near and candidate.problem is not None
+        if comparable and same_form(run.form(candidate), form):
+            return candidate.label
     label = run.new_label(point.label.rstrip("0123456789"))
     graph.special[label] = replace(point, label=label, branch=called[point.branch])
     return label
@@ -86,13 +86,13 @@ def _refuse_strangers(graph: Graph, other: Graph) -> None:
     if graph.parameter != other.parameter:
         raise ValueError(f"graphs over {graph.parameter} and over {other.parameter} cannot be merged")
     for name, value in graph.model.items():
-        theirs = other.model.get(name, value)
-        numbers = isinstance(value, int | float) and isinstance(theirs, int | float)
-        if (numbers and not np.isclose(value, theirs, rtol=Settings.rounding)) or (
-            not numbers and theirs != value
+        other_value = other.model.get(name, value)
+        numbers = isinstance(value, int | float) and isinstance(other_value, int | float)
+        if (numbers and not np.isclose(value, other_value, rtol=Settings.rounding)) or (
+            not numbers and other_value != value
         ):
             raise ValueError(
-                f"graphs of two machines cannot be merged: {name} = {value} here and {theirs} there"
+                f"graphs of two machines cannot be merged: {name} = {value} here and {other_value} there"
             )
     for part in (graph, other):
         lost = [b.label for b in part.branches.values() if b.problem is None]

@@ -64,14 +64,14 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
         Largest number of values returned, those of wide stretches first.
     """
     size = graph.within[1] - graph.within[0]
-    known = np.sort(np.asarray(asked, dtype=float))
+    simulated = np.sort(np.asarray(asked, dtype=float))
     marks = changes(graph)
     wanted: list[tuple[float, float]] = []
     for first, last in pairwise(marks):
         width = float(last - first)
         if width <= ATLAS.narrow * size:
             continue
-        inside = known[(known > first) & (known < last)]
+        inside = simulated[(simulated > first) & (simulated < last)]
         if not inside.size:
             wanted.append((width, float(0.5 * (first + last))))
         step = ATLAS.beyond * size
@@ -102,9 +102,9 @@ def unresolved(
     """
     wanted: dict[float, float] = {}
     for kind in UNBRANCHED:
-        here = set(met.get(kind, ()))
-        for first, last in pairwise(sorted(here | set(asked)) if here else ()):
-            if (first in here) != (last in here) and last - first > RESOLVED * (within[1] - within[0]):
+        holders = set(met.get(kind, ()))
+        for first, last in pairwise(sorted(holders | set(asked)) if holders else ()):
+            if (first in holders) != (last in holders) and last - first > RESOLVED * (within[1] - within[0]):
                 wanted[0.5 * (first + last)] = last - first
     return sorted(wanted, key=lambda p: (-wanted[p], p))[:most]
 
@@ -177,18 +177,18 @@ class Handover:
         low, high = self.run.graph.within
         near, far = (min(part * end.width, ATLAS.farthest * (high - low)) for part in (PAST, BEYOND_CASCADE))
         found: list[Counted] = []
-        for past in dict.fromkeys((near, float(np.sqrt(near * far)), far, FARTHER * far)):
-            if past not in (near, far) and any(counted.attractor.kind != "slow" for counted in found):
+        for distance in dict.fromkeys((near, float(np.sqrt(near * far)), far, FARTHER * far)):
+            if distance not in (near, far) and any(counted.attractor.kind != "slow" for counted in found):
                 continue
-            p = end.value + end.side * past
-            starts = self._beside(end, p) if low < p < high else None
+            p = end.value + end.side * distance
+            starts = self._starts_beside(end, p) if low < p < high else None
             if starts is not None:
                 self.run.tell(f"{end.label} followed to {self.population.parameter} = {p:.6g}", p)
                 key = f"handover/{end.label}/{end.value!r}/{end.side}/{p!r}"
                 found += followed(self.population, p, starts, key, self.run.journal)
         return [counted for counted in found if counted.attractor.kind != "impossible"]
 
-    def _beside(self, end: End, p: float) -> np.ndarray | None:
+    def _starts_beside(self, end: End, p: float) -> np.ndarray | None:
         """Return two starts beside the motion at an end, shape (2, n); None if it cannot be simulated."""
         branch = self.run.graph.branches[end.label]
         for place in end.places:
@@ -201,10 +201,10 @@ class Handover:
                 continue
             columns = [self.population.names.index(name) for name in section.names]
             low, high = self.population.box(p)[columns].T
-            aside = ATLAS.aside * (high - low) * np.cos(np.arange(len(point)))
+            shift = ATLAS.aside * (high - low) * np.cos(np.arange(len(point)))
             starts = np.zeros((2, len(self.population.names)))
             starts[:, columns] = np.clip(
-                [point + aside, point - aside], np.minimum(low, point), np.maximum(high, point)
+                [point + shift, point - shift], np.minimum(low, point), np.maximum(high, point)
             )
             return starts
         return None
@@ -219,7 +219,7 @@ def loose_ends(graph: Graph) -> list[End]:
     firsts = np.array([first.value for first, _ in stretches])
     lasts = np.array([last.value for _, last in stretches])
     wide = _together(firsts, lasts, MEETING * size) > ATLAS.narrow_chain * size
-    stretches = [s for s, enough in zip(stretches, wide, strict=True) if enough]
+    stretches = [s for s, is_wide in zip(stretches, wide, strict=True) if is_wide]
     found: dict[tuple[str, float, float], End] = {}
     for first, last in stretches:
         for end, others in ((first, lasts), (last, firsts)):

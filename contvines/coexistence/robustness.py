@@ -331,9 +331,9 @@ class _Kicked:
         rays, inside, outside, reaches = rays[near], inside[near], outside[near], reaches[near]
         for _ in range(HALVINGS):
             middle = 0.5 * (inside + outside)
-            gone, names = self._lost(self._starts(place[rays] + middle[:, None] * along[rays]))
-            outside, inside = np.where(gone, middle, outside), np.where(gone, inside, middle)
-            reaches = np.where(gone, names, reaches)
+            escapes, names = self._lost(self._starts(place[rays] + middle[:, None] * along[rays]))
+            outside, inside = np.where(escapes, middle, outside), np.where(escapes, inside, middle)
+            reaches = np.where(escapes, names, reaches)
         best = int(outside.argmin())
         return place[rays[best]], outside[best] * along[rays[best]], str(reaches[best])
 

@@ -40,8 +40,8 @@ class Windows:
         No search begins once its budget is used up.
     """
 
-    def __init__(self, run: Run, population: Population, apart: Run, effort: Effort) -> None:
-        self.run, self.population, self.apart, self.effort = run, population, apart, effort
+    def __init__(self, run: Run, population: Population, separate: Run, effort: Effort) -> None:
+        self.run, self.population, self.separate, self.effort = run, population, separate, effort
         self.left = 0  # number of searches not begun or not completed
 
     def beside(self, found: Sequence[Counted]) -> None:
@@ -91,22 +91,22 @@ class Windows:
                 lambda p=p: population.returning(population.starts(count, seed, p), p),
             )
 
-    def _search(self, key: str, p: float, what: str, cycles: Callable[[], Sequence[Solution]]) -> None:
+    def _search(self, key: str, p: float, name: str, cycles: Callable[[], Sequence[Solution]]) -> None:
         """Trace the cycles at a value and add the stable branches found to the atlas, unless the budget is used up."""
         if self.effort.over:
             self.left += 1
             return
-        where = f"{self.population.parameter} = {p:.6g}"
-        self.run.tell(f"{what} at {where}", p)
+        place = f"{self.population.parameter} = {p:.6g}"
+        self.run.tell(f"{name} at {place}", p)
 
-        def recalled(known: Mapping[str, Any]) -> list[Solution] | None:
+        def recalled(record: Mapping[str, Any]) -> list[Solution] | None:
             """Return the recorded cycles; None if a problem needs user functions that are not available."""
             found = []
-            for k, description in enumerate(known["problems"]):
-                problem = self.population.restored(description, known[f"u{k}"], p)
+            for k, description in enumerate(record["problems"]):
+                problem = self.population.restored(description, record[f"u{k}"], p)
                 if problem is None:
                     return None
-                found.append((problem, known[f"u{k}"]))
+                found.append((problem, record[f"u{k}"]))
             return found
 
         with self.effort.piece(CYCLES):
@@ -117,8 +117,8 @@ class Windows:
                     self.left += 1
                     break
                 if self.run.register.find(problem, u, p) is None:
-                    told = f"cycle {k + 1} of {len(found)} at {where}: followed to where it is stable"
-                    self.run.tell(told, p)
+                    message = f"cycle {k + 1} of {len(found)} at {place}: followed to where it is stable"
+                    self.run.tell(message, p)
                     stable += self._traced(problem, u, p)
             for problem, u, at in stable:
                 if self.run.register.find(problem, u, at, True) is None:
@@ -126,18 +126,18 @@ class Windows:
 
     def _traced(self, problem: Problem, u: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray, float]]:
         """Trace a cycle on the separate graph, unless known there; return a point of each stable stretch of the new branches."""
-        apart, (low, high) = self.apart, self.run.graph.within
-        if apart.register.find(problem, u, p) is not None:
+        separate, (low, high) = self.separate, self.run.graph.within
+        if separate.register.find(problem, u, p) is not None:
             return []
-        known = len(apart.graph.branches)
+        count = len(separate.graph.branches)
         try:
-            begin(apart, problem, u, p)
-            work(apart)
+            begin(separate, problem, u, p)
+            work(separate)
         except ValueError:  # the cycle is real only within rounding errors
             return []
         return [
             (branch.attached, branch.points[i], float(branch.values[i]))
-            for branch in list(apart.graph.branches.values())[known:]
+            for branch in list(separate.graph.branches.values())[count:]
             if branch.real
             for i in _middles(branch, ATLAS.narrow * (high - low))
         ]

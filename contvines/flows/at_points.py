@@ -81,12 +81,12 @@ class AtPoints:
         except Exception:  # the points may be outside the domain of f
             return
         try:
-            together = self._together(x, parameters, t)
+            values = self._together(x, parameters, t)
         except Exception:  # a function for one point may fail in any way when it is called with many
             self.many = False
             return
         size = agree * np.abs(single).max(initial=0.0)
-        self.many = bool(np.allclose(single, together, rtol=agree, atol=size))
+        self.many = bool(np.allclose(single, values, rtol=agree, atol=size))
 
 
 def _full(given: object) -> np.ndarray:
@@ -206,7 +206,7 @@ class CompiledRates:
     def derivatives(self, names: list[str]) -> dict[str, Callable[..., np.ndarray]]:
         """Return functions for df/dp by the names of the parameters."""
 
-        def by(k: int) -> Callable[..., np.ndarray]:
+        def slope(k: int) -> Callable[..., np.ndarray]:
             return lambda x, p, t=None: self._one(self.dfdp, x, p, t, (len(x), len(names)))[:, k]
 
-        return {name: by(k) for k, name in enumerate(names)}
+        return {name: slope(k) for k, name in enumerate(names)}

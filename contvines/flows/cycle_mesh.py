@@ -80,8 +80,8 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         self.u0 = np.array(u, dtype=float)
         if len(self.u0) != self.dimension:
             raise ValueError(f"{len(self.u0)} unknowns; {self.dimension} are needed")
-        about = self.free_period, self.copies, self.node_scale, flow.settings.same
-        self.moving = MovingMesh(self.rule, self.intervals, *about)
+        options = self.free_period, self.copies, self.node_scale, flow.settings.same
+        self.moving = MovingMesh(self.rule, self.intervals, *options)
         self._size()
 
     def _size(self) -> None:
@@ -266,10 +266,10 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         It is 0 for a cycle that runs twice through a shorter one, or that is its own mirror image.
         """
         x, widths = self.curve(u)
-        later = mesh.evaluate(self.rule, widths, x, mesh.node_places(self.rule, widths) + 0.5)
-        images, apart = [later], np.abs(widths - np.roll(widths, self.intervals // 2)).max()
-        if self.flow.mirror is not None and apart > self.flow.settings.same * widths.max():
-            images.append(self.flow.mirrored(later))
-        x = x.reshape(later.shape) / self.node_scale
+        half_later = mesh.evaluate(self.rule, widths, x, mesh.node_places(self.rule, widths) + 0.5)
+        images, inequality = [half_later], np.abs(widths - np.roll(widths, self.intervals // 2)).max()
+        if self.flow.mirror is not None and inequality > self.flow.settings.same * widths.max():
+            images.append(self.flow.mirrored(half_later))
+        x = x.reshape(half_later.shape) / self.node_scale
         gaps = [np.abs(x - image / self.node_scale).max() for image in images]
         return float(min(gaps) / max(np.ptp(x, axis=0).max(), TINY))

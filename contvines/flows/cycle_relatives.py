@@ -74,8 +74,8 @@ class CycleRelatives(CycleMesh):
         half = self.intervals // 2
         if self.copies % 2 or not (self.free_period or self.rounds % 2 == 0):
             return None
-        apart = np.abs(x[:half] - x[half:]).max(axis=(0, 1)) / self.node_scale
-        if not (apart <= near * (1.0 + np.abs(y).max(axis=0) / self.node_scale)).all():
+        gaps = np.abs(x[:half] - x[half:]).max(axis=(0, 1)) / self.node_scale
+        if not (gaps <= near * (1.0 + np.abs(y).max(axis=0) / self.node_scale)).all():
             return None
         shorter = self.joined(0.5 * (x[:half] + x[half:]), 0.5 * u[self.states], 2.0 * widths[:half])
         rounds = self.rounds if self.free_period else self.rounds // 2
@@ -237,10 +237,10 @@ class CycleRelatives(CycleMesh):
 
     def _missed(self, u: np.ndarray, p: float, k: int) -> float:
         """Error of the smallest value of an event, from the error of the curve between the mesh points."""
-        (x, when), sizes = self.touching(u, p, k), self.sizes(self.curve(u)[0])
+        (x, time), sizes = self.touching(u, p, k), self.sizes(self.curve(u)[0])
         touch = self.flow.settings.touch
         moved = x + touch * np.concatenate([np.diag(sizes), -np.diag(sizes)])
-        values = self.flow.events(moved, self.values.at(p), np.full(len(moved), when))[:, k].reshape(2, -1)
+        values = self.flow.events(moved, self.values.at(p), np.full(len(moved), time))[:, k].reshape(2, -1)
         return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * touch))
 
     def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:

@@ -86,8 +86,8 @@ class CycleProblem(CycleRelatives):
             work.phase[0, 0] = 1.0
         if self.reference is not None:
             work.phase[:], origin = self.reference
-            off = (x / self.node_scale - origin).reshape(work.phase.shape)
-            work.residual[self.states] = (work.phase * off).sum()
+            displacement = (x / self.node_scale - origin).reshape(work.phase.shape)
+            work.residual[self.states] = (work.phase * displacement).sum()
 
     def _evaluated(
         self, x: np.ndarray, widths: np.ndarray, period: float, p: float, work: CycleWork
@@ -134,8 +134,8 @@ class CycleProblem(CycleRelatives):
         if self.reference is None:
             return not self.free_period
         x, widths = self.curve(u)
-        alike = mesh.alike(self.rule, widths, x / self.node_scale, self.reference[1])
-        return alike > self.flow.settings.in_phase
+        similarity = mesh.alike(self.rule, widths, x / self.node_scale, self.reference[1])
+        return similarity > self.flow.settings.in_phase
 
     # ------------------------------------------------------------------ need for more intervals
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
@@ -169,8 +169,8 @@ class CycleProblem(CycleRelatives):
         x, period, widths = self.parts(u, p)
         most, shortest = self.rule.resolved, int(np.argmin(widths))
         unit = self.node_scale / self.node_scale[:, None]
-        when = None if self.free_period else np.array([period * widths[:shortest].sum()])
-        first = self.field.jacobian(x[shortest, :1], p, when)[0] * unit
+        time = None if self.free_period else np.array([period * widths[:shortest].sum()])
+        first = self.field.jacobian(x[shortest, :1], p, time)[0] * unit
         if not period * widths[shortest] * np.linalg.norm(first) > most:
             return False
         work = self.workspace()

@@ -150,9 +150,9 @@ class Equilibria(AlgebraicProblem):
 
     def describe(self) -> dict[str, Any]:
         """Return name, start, and the data from which the problem is rebuilt."""
-        about = super().describe()
-        about["factory"] = self.flow.rebuilt_by(bool(about.get("factory")))
-        return {**about, "word": "equilibrium", "flow": self.flow.described()}
+        data = super().describe()
+        data["factory"] = self.flow.rebuilt_by(bool(data.get("factory")))
+        return {**data, "word": "equilibrium", "flow": self.flow.described()}
 
 
 def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.ndarray) -> Embedding:
@@ -172,14 +172,14 @@ def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.
     scale, unit = (np.ones(d), 1.0) if scales is None else (scales.unknowns[:d], scales.parameter)
     field = flow.field.against(problem.values.against(problem.parameter, {problem.parameter: p}))
     widths, period = np.full(FIRST, 1.0 / FIRST), 2.0 * np.pi / omega
-    still = np.concatenate([np.tile(u[:d], FIRST * flow.degree), [period], widths])
-    cycles = flow.cycles(field, still, (FIRST, 1, 1), (scale, period, unit))
+    unknowns = np.concatenate([np.tile(u[:d], FIRST * flow.degree), [period], widths])
+    cycles = flow.cycles(field, unknowns, (FIRST, 1, 1), (scale, period, unit))
     assert flow.sizes is not None  # set by the first call of flow.cycles
     q = q / np.linalg.norm(q / flow.sizes[0])
     angles = 2.0 * np.pi * mesh.node_places(mesh.rule(flow.degree), widths)
     wave = np.real(np.exp(1j * angles)[:, None] * q)
     direction = np.concatenate([wave.reshape(-1), np.zeros(1 + FIRST + 1)])
-    return Embedding(cycles, still, direction, "hopf")
+    return Embedding(cycles, unknowns, direction, "hopf")
 
 
 @dataclass(frozen=True)

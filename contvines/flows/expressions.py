@@ -191,14 +191,14 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     parameters: dict[str, float] = {}
     fixed: dict[str, Formula] = {}
     functions: dict[str, Function] = {}
-    begun: dict[str, str] = {}  # states with initial values -> their lines, for messages
+    initial: dict[str, str] = {}  # states with initial values -> their lines, for messages
 
     def new(name: str, where: str) -> str:
         if name == "t" or callable(WORDS.get(name)):
             raise ValueError(
                 f"{where}: the name {name!r} is that of {'the time' if name == 't' else 'a function'}; choose another one"
             )
-        if any(name in there for there in (rates, parameters, fixed, functions)):
+        if any(name in table for table in (rates, parameters, fixed, functions)):
             raise ValueError(f"{where}: the name {name!r} is there twice; choose another one")
         return name
 
@@ -210,13 +210,13 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
         if low == "done":
             break
         where = f"{path}, line {number}: {raw.strip()!r}"
-        refused = next((why for words, why in REFUSED.items() if re.match(words, low)), "")
+        refused = next((reason for words, reason in REFUSED.items() if re.match(words, low)), "")
         if refused:
             raise ValueError(f"{where}: {refused}")
         if declared := DECLARED.match(low):
             for name, value in PARAMETER.findall(low[declared.end() :]):
                 if declared[1].startswith("i"):
-                    starts[name], begun[name] = _number(value, where), where
+                    starts[name], initial[name] = _number(value, where), where
                 else:
                     parameters[new(name, where)] = _number(value, where)
             continue
@@ -226,7 +226,7 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
             name, text = (found[1], found[2]) if found[1] else (found[3], found[4])
             rates[new(name, where)] = _formula(text, where)
         elif found := re.match(r"([a-z_]\w*)\(0\)\s*=(.*)$", low):
-            starts[found[1]], begun[found[1]] = _number(found[2], where), where
+            starts[found[1]], initial[found[1]] = _number(found[2], where), where
         elif found := re.match(r"([a-z_]\w*)\(([^)]*)\)\s*=(.*)$", low):
             names = [part.strip() for part in found[2].split(",") if part.strip()]
             functions[new(found[1], where)] = Function(names, _formula(found[3], where))
@@ -238,7 +238,7 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
             )
     if not rates:
         raise ValueError(f"{path}: it has no equation x'=... or dx/dt=...")
-    for name, where in begun.items():
+    for name, where in initial.items():
         if name not in rates:
             raise ValueError(
                 f"{where}: {name!r} is no state{did_you_mean(name, rates)}; states are {', '.join(rates)}"
@@ -253,17 +253,17 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
 
 def _whole_lines(text: str) -> Iterator[tuple[int, str]]:
     """Generate (number, line), with continued lines joined under the number of the first."""
-    begun, number = "", 1
+    joined, number = "", 1
     for i, line in enumerate(text.splitlines(), start=1):
-        number = number if begun else i
-        begun += line.rstrip()
-        if begun.endswith("\\"):
-            begun = begun[:-1]
+        number = number if joined else i
+        joined += line.rstrip()
+        if joined.endswith("\\"):
+            joined = joined[:-1]
             continue
-        yield number, begun
-        begun = ""
-    if begun:
-        yield number, begun
+        yield number, joined
+        joined = ""
+    if joined:
+        yield number, joined
 
 
 def _refuse_unknown(
@@ -284,13 +284,13 @@ def _refuse_unknown(
         *((formula, list(fixed)) for formula in rates.values()),
     ]
     for formula, own in lines:
-        known = {*quantities, *own}
-        for name in sorted(formula.names - known):
+        allowed = {*quantities, *own}
+        for name in sorted(formula.names - allowed):
             if name in fixed:
                 raise ValueError(
                     f"{formula.where}: {name!r} is further down; a fixed quantity may only use those above it"
                 )
-            hint = did_you_mean(name, [*known, *functions, *words])
+            hint = did_you_mean(name, [*allowed, *functions, *words])
             raise ValueError(f"{formula.where}: {name!r} is no state, parameter or fixed quantity{hint}")
         for name, count in formula.calls:
             if name not in words and name not in counts:

@@ -402,24 +402,24 @@ class Events:
         def values(places: np.ndarray) -> np.ndarray:
             return self(motion(places), parameters, places * period if self.forced else None)
 
-        count, smallest, where = len(edges), np.empty(len(self)), np.empty(len(self))
+        count, smallest, place_of = len(edges), np.empty(len(self)), np.empty(len(self))
         rough = values(edges)
         for k in range(len(self)):
             j = int(np.argmin(rough[:, k]))
             low, high = edges[j - 1] - (j == 0), edges[(j + 1) % count] + (j == count - 1)
-            places, here, i = np.empty(0), np.empty(0), 1
+            places, along, i = np.empty(0), np.empty(0), 1
             for _ in range(ROUNDS):
                 places = np.linspace(low, high, CLOSER + 1)
-                here = values(places)[:, k]
-                i = min(max(int(np.argmin(here)), 1), CLOSER - 1)
+                along = values(places)[:, k]
+                i = min(max(int(np.argmin(along)), 1), CLOSER - 1)
                 low, high = places[i - 1], places[i + 1]
-            left, middle, right = here[i - 1 : i + 2]
+            left, middle, right = along[i - 1 : i + 2]
             bend = left - 2.0 * middle + right
             step = min(max(0.5 * (left - right) / bend, -1.0), 1.0) if bend > 0.0 else 0.0
             inside = bend > 0.0 and abs(step) < 1.0
-            smallest[k] = middle - 0.125 * (right - left) ** 2 / bend if inside else here.min()
-            where[k] = places[i] + step * (places[1] - places[0])
-        return smallest, where % 1.0
+            smallest[k] = middle - 0.125 * (right - left) ** 2 / bend if inside else along.min()
+            place_of[k] = places[i] + step * (places[1] - places[0])
+        return smallest, place_of % 1.0
 
     def crossings(self, values: ParameterSet, p: float) -> Sequence[Callable]:
         """Return the events as terminal event functions of scipy's integrators."""

@@ -68,12 +68,12 @@ def _names(description: Mapping[str, Any]) -> list[str]:
 
 def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
     """The flow of a description; all branches of a graph share one."""
-    about = description["flow"]
-    key = json.dumps([description["callables"], about, description["name"], sorted(_names(description))])
+    data = description["flow"]
+    key = json.dumps([description["callables"], data, description["name"], sorted(_names(description))])
     if key in _rebuilt:
         return _rebuilt[key]
-    if about.get("file"):
-        file, name, digest = about["file"]
+    if data.get("file"):
+        file, name, digest = data["file"]
         loaded = [
             flow for flow in _loaded.values() if flow.origin is not None and flow.origin[1:] == (name, digest)
         ]
@@ -90,7 +90,7 @@ def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
     functions = find_callables(description["callables"], trust)
     if functions is None:
         return None
-    period = about["period"]
+    period = data["period"]
     if isinstance(period, str):
         found = find_callables({"period": period}, trust)
         if found is None:
@@ -100,16 +100,16 @@ def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
     functions.pop("period", None)
     flow = _rebuilt[key] = FlowProblem(
         functions.pop("F"),
-        about["x0"],
+        data["x0"],
         description["p0"],
         parameter=description["parameter"],
         name=description["name"],
-        degree=about["degree"],
-        error=about["error"],
-        settings=about.get("settings"),
+        degree=data["degree"],
+        error=data["error"],
+        settings=data.get("settings"),
         period=period,
-        scale=about["scale"],
-        states=about.get("states"),
+        scale=data["scale"],
+        states=data.get("states"),
         **functions,
     )
     return flow

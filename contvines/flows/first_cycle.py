@@ -114,7 +114,7 @@ def _once(flow: Flow, orbit: CycleOrbit, parameters: ParameterSet, rounds: int) 
             shorter = cycle_beside(flow, share, orbit(share), parameters, left)
         except ValueError:
             continue
-        again = shorter(n * shorter.period * times / orbit.period % shorter.period)
-        if (np.abs(again - states) <= exact).all():
+        repeated = shorter(n * shorter.period * times / orbit.period % shorter.period)
+        if (np.abs(repeated - states) <= exact).all():
             return shorter
     return None

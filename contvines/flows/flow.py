@@ -224,12 +224,12 @@ class Flow(ABC):
     def described(self) -> dict[str, Any]:
         """Return the data of the flow beside its functions, as part of ``describe()``."""
         period, changed = self.given_period, self.settings.changed()
-        where, _ = addresses({"period": period if callable(period) else None})
+        address, _ = addresses({"period": period if callable(period) else None})
         return {
             "degree": self.degree,
             "error": self.error,
             **({"settings": changed} if changed else {}),
-            "period": where["period"] if callable(period) else period,
+            "period": address["period"] if callable(period) else period,
             "x0": self.x0.tolist(),
             "scale": self._scale(),
             "states": None if self.given_states is None else list(self.states),
@@ -238,7 +238,7 @@ class Flow(ABC):
 
     def describe(self) -> dict[str, Any]:
         """Return name, start, and the data from which the flow is rebuilt if its functions can be imported."""
-        where, importable = addresses(
+        address, importable = addresses(
             {**self.given, "period": self.given_period if callable(self.given_period) else None}
         )
         return {
@@ -247,7 +247,7 @@ class Flow(ABC):
             "u0": self.x0.tolist(),
             "p0": self.values.given(),
             "scale": self._scale(),
-            "callables": where,
+            "callables": address,
             "flow": self.described(),
             "factory": self.rebuilt_by(importable),
         }

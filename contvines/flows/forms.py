@@ -163,14 +163,14 @@ def quadratic(problem: CycleMesh, u: np.ndarray, p: float, along: np.ndarray) ->
     """Return the coefficient a at a fold, and the sum of the magnitudes of its terms; the sign of v is that of `along`."""
     system = Return(problem, u, p)
     v, w, weight, _ = system.critical(1.0)
-    here = system.parts(v, 1.0)
-    one, two = system.bent(here[0])
-    side = system.second(one, here, here)
+    parts = system.parts(v, 1.0)
+    one, two = system.bent(parts[0])
+    side = system.second(one, parts, parts)
     first, moved = slice(0, problem.node), along[: problem.node]
     if system.free:
         speed = problem.field(u[None, first], p)[0]
         moved = moved - (speed @ moved) / (speed @ speed) * speed
-    third = system.rows(system.steps[:, None] * _apply(two, here[0]))
+    third = system.rows(system.steps[:, None] * _apply(two, parts[0]))
     size = np.linalg.norm(w) * (np.linalg.norm(side) + NEAR * np.linalg.norm(third))
     scale = math.copysign(0.5, -float(v[first] @ moved)) / np.real(weight)
     return float(scale * (w @ side)), float(abs(scale) * size)
@@ -180,14 +180,14 @@ def cubic(problem: CycleMesh, u: np.ndarray, p: float, factor: float) -> tuple[f
     """Return c at a period doubling (m = -1) or a pitchfork (m = 1), and the sum of the magnitudes of its terms."""
     system = Return(problem, u, p)
     v, w, weight, bordered = system.critical(factor)
-    here = system.parts(v, factor)
-    one, two = system.bent(here[0])
-    side = -system.second(one, here, here)
+    parts = system.parts(v, factor)
+    one, two = system.bent(parts[0])
+    side = -system.second(one, parts, parts)
     h = system.solve(1.0, side) if factor < 0.0 else bordered.solve(np.append(side, 0.0))[:-1]
-    third = -system.steps[:, None] * _apply(two, here[0]) - 3.0 * system.widths[:, None] * here[1] * _apply(
-        one, here[0]
+    third = -system.steps[:, None] * _apply(two, parts[0]) - 3.0 * system.widths[:, None] * parts[1] * _apply(
+        one, parts[0]
     )
-    terms = np.array([w @ system.rows(third), 3.0 * w @ system.second(one, here, system.parts(h, 1.0))])
+    terms = np.array([w @ system.rows(third), 3.0 * w @ system.second(one, parts, system.parts(h, 1.0))])
     return _summed(-terms / (6.0 * np.real(weight)))
 
 
@@ -200,20 +200,20 @@ def neimark_sacker(problem: CycleMesh, u: np.ndarray, p: float, multiplier: comp
     m = multiplier / abs(multiplier)
     system = Return(problem, u, p)
     q, w, weight, _ = system.critical(m)
-    here = system.parts(q, m)
-    other: tuple[np.ndarray, complex] = (here[0].conj(), np.conj(here[1]))
-    a1, a2 = system.bent(np.real(here[0]))
-    b1, b2 = system.bent(np.imag(here[0]))
+    parts = system.parts(q, m)
+    other: tuple[np.ndarray, complex] = (parts[0].conj(), np.conj(parts[1]))
+    a1, a2 = system.bent(np.real(parts[0]))
+    b1, b2 = system.bent(np.imag(parts[0]))
     along, against = a1 + 1j * b1, a1 - 1j * b1
-    h11 = system.solve(1.0 + 0j, -system.second(along, here, other))
-    h20 = system.solve(m**2, -system.second(along, here, here))
-    t, s = here[1], other[1]
-    third = -system.steps[:, None] * _apply(a2 + b2, here[0]) - system.widths[:, None] * (
-        2.0 * t * _apply(along, other[0]) + s * _apply(along, here[0])
+    h11 = system.solve(1.0 + 0j, -system.second(along, parts, other))
+    h20 = system.solve(m**2, -system.second(along, parts, parts))
+    t, s = parts[1], other[1]
+    third = -system.steps[:, None] * _apply(a2 + b2, parts[0]) - system.widths[:, None] * (
+        2.0 * t * _apply(along, other[0]) + s * _apply(along, parts[0])
     )
     terms = [
         w @ system.rows(third),
-        2.0 * w @ system.second(along, here, system.parts(h11, 1.0)),
+        2.0 * w @ system.second(along, parts, system.parts(h11, 1.0)),
         w @ system.second(against, other, system.parts(h20, m**2)),
     ]
     return _summed(np.real(-0.5 * np.array(terms) / weight / m))

@@ -91,8 +91,8 @@ def checked_names(given: Sequence[str] | None, count: int) -> tuple[str, ...]:
         raise ValueError(f"states = {tuple(given)!r} has {len(given)} names; the flow has {count} states")
     wrong = next((name for k, name in enumerate(given) if name in (*given[:k], *TAKEN)), None)
     if wrong is not None:
-        why = "is that of a measure" if wrong in TAKEN else "is there twice"
-        raise ValueError(f"states: the name {wrong!r} {why}; choose another one")
+        reason = "is that of a measure" if wrong in TAKEN else "is there twice"
+        raise ValueError(f"states: the name {wrong!r} {reason}; choose another one")
     return tuple(given)
 
 
@@ -115,7 +115,7 @@ class MeasuresWithoutRates:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the measures: those of the flow itself without the user's outputs."""
-        each = tuple(f"{what} {state}" for what in OF_STATES for state in self.states)
+        each = tuple(f"{kind} {state}" for kind in OF_STATES for state in self.states)
         if self.intervals:
             return "norm", "period", *each
         unknowns = tuple(f"u{j}" for j in range(len(self.states)))
@@ -146,5 +146,5 @@ def measures_without_rates(description: Mapping[str, Any], unknowns: int) -> Mea
     states, rule = checked_names(flow["states"], len(flow["x0"])), mesh.rule(flow["degree"])
     count = 0 if cycle is None else cycle["intervals"]
     whole = count * (rule.degree * len(states) + 1)
-    known = unknowns in (whole, whole + 1) if count else unknowns == len(states)
-    return MeasuresWithoutRates(states, rule, count) if known else None
+    matches = unknowns in (whole, whole + 1) if count else unknowns == len(states)
+    return MeasuresWithoutRates(states, rule, count) if matches else None

@@ -219,9 +219,9 @@ def along_data(times: np.ndarray, states: np.ndarray, count: int, copies: int) -
 def with_equal_halves(widths: np.ndarray) -> np.ndarray:
     """Return the widths of a mesh with twice as many intervals and two equal halves, each as fine as both old halves together."""
     number, places = np.arange(len(widths) + 1.0), np.append(0.0, np.cumsum(widths))
-    here = np.unique(np.clip(np.concatenate([places, places - 0.5, [0.5]]), 0.0, 0.5))
-    passed = np.interp(here, places, number) + np.interp(here + 0.5, places, number)
-    return np.tile(np.diff(np.interp(number, passed - passed[0], here)), 2)
+    folded = np.unique(np.clip(np.concatenate([places, places - 0.5, [0.5]]), 0.0, 0.5))
+    passed = np.interp(folded, places, number) + np.interp(folded + 0.5, places, number)
+    return np.tile(np.diff(np.interp(number, passed - passed[0], folded)), 2)
 
 
 def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> np.ndarray:

@@ -116,23 +116,25 @@ class MovingMesh:
         # quadratic form of each interval in the displacements of its left and right mesh points
         weights = np.stack([(1.0 - inside) ** 2, inside * (1.0 - inside), inside**2], axis=1)
         sums = np.column_stack([squares @ weights, products @ (1.0 - inside), products @ inside])
-        left, both, right, here, there = sums.reshape(self.copies, n, 5).sum(axis=0).T
+        left, mixed, right, linear_left, linear_right = sums.reshape(self.copies, n, 5).sum(axis=0).T
         size = float(np.ptp(x.reshape(-1, d), axis=0).max())
         stiff = STIFFNESS * size**2 * count * m * d * (1.0 / widths.reshape(self.copies, n)).sum(axis=0)
         diagonal = left + stiff + np.roll(right + stiff, 1)
-        beside, wanted = both - stiff, -here - np.roll(there, 1)
+        off_diagonal, wanted = mixed - stiff, -linear_left - np.roll(linear_right, 1)
         # express the others by the first mesh point, which closes the ring
         sides = np.zeros((n - 1, 2))
         sides[:, 0] = wanted[1:]
-        sides[0, 1] -= beside[0]
-        sides[-1, 1] -= beside[-1]
+        sides[0, 1] -= off_diagonal[0]
+        sides[-1, 1] -= off_diagonal[-1]
         try:
-            found = solveh_banded(np.stack([diagonal[1:], np.append(beside[1:-1], 0.0)]), sides, lower=True)
+            found = solveh_banded(
+                np.stack([diagonal[1:], np.append(off_diagonal[1:-1], 0.0)]), sides, lower=True
+            )
         except (np.linalg.LinAlgError, ValueError):  # the cycle is at rest, or a number is not finite
             return np.zeros(count)
         first = 0.0
         if self.free:
-            ends = beside[0] * found[0] + beside[-1] * found[-1]
+            ends = off_diagonal[0] * found[0] + off_diagonal[-1] * found[-1]
             first = (wanted[0] - ends[0]) / (diagonal[0] + ends[1])
         return np.tile(np.append(first, found[:, 0] + first * found[:, 1]), self.copies)
 
@@ -158,16 +160,16 @@ def _at_extreme(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Extreme values and their changes, by parabolas through the outermost nodes k and their neighbours, so that they are continuous when another node becomes outermost."""
     before, after = (k - 1) % len(flat), (k + 1) % len(flat)
-    back, on = gaps[before], gaps[k]
+    left, right = gaps[before], gaps[k]
 
     def parabola(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         middle = values[k, each]
-        falls, rises = (middle - values[before, each]) / back, (values[after, each] - middle) / on
-        bend = (rises - falls) / (back + on)
-        return middle, rises - bend * on, bend
+        falls, rises = (middle - values[before, each]) / left, (values[after, each] - middle) / right
+        bend = (rises - falls) / (left + right)
+        return middle, rises - bend * right, bend
 
     value, slope, bend = parabola(flat)
     place = np.divide(-0.5 * slope, bend, out=np.zeros(len(bend)), where=bend != 0.0)
-    place = np.clip(place, -back, on)
+    place = np.clip(place, -left, right)
     moved = parabola(change)
     return value + place * (slope + place * bend), moved[0] + place * (moved[1] + place * moved[2])

@@ -142,8 +142,8 @@ class CycleOrbit:
     @property
     def multiplier_errors(self) -> np.ndarray:
         """Estimated error of each multiplier, as `period_error`."""
-        apart = np.abs(self.multipliers[:, None] - self._finer[1])
-        return 2.0 * apart.min(axis=1, initial=np.inf)
+        gaps = np.abs(self.multipliers[:, None] - self._finer[1])
+        return 2.0 * gaps.min(axis=1, initial=np.inf)
 
     @property
     def trivial_error(self) -> float:

@@ -117,8 +117,8 @@ class FlowPopulation(StartsInBox):
         s = self.field.settings
         size = np.maximum(size, s.smallest * self.size)
         near = np.zeros(len(x), dtype=bool)
-        apart = self.field.forced or len(curve) == 1
-        unit = ((curve if apart else np.roll(curve, -1, axis=0)) - curve) / size
+        separate = self.field.forced or len(curve) == 1
+        unit = ((curve if separate else np.roll(curve, -1, axis=0)) - curve) / size
         length = (unit**2).sum(axis=1)
         for i, state in enumerate(x):
             gap = (state - curve) / size
@@ -127,14 +127,14 @@ class FlowPopulation(StartsInBox):
             near[i] = distance.min() <= s.near * np.sqrt(self.node)
         return near
 
-    def solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
+    def solved(self, x: np.ndarray, path: Sequence[Place], p: float) -> Settled | None:
         """Solve for the equilibrium or cycle on which the motion from a state settles; None if there is none.
 
         Parameters
         ----------
         x : ndarray, shape (d,)
             Last state of the motion.
-        way : sequence of Place
+        path : sequence of Place
             Earlier states, which may already contain a period of a cycle.
         p : float
         """
@@ -145,11 +145,11 @@ class FlowPopulation(StartsInBox):
                 return found
         values = {**self.values.values, self.parameter: p}
         try:
-            orbit = self._recurring(way, values, p)
+            orbit = self._recurring(path, values, p)
             if orbit is None:
                 orbit = self.flow.attractor_at(values, x, longest=LONGEST, doublings=DOUBLINGS)
-        except AtRest as still:
-            return self._equilibrium(self._rest(still.state, p), p)
+        except AtRest as at_rest:
+            return self._equilibrium(self._rest(at_rest.state, p), p)
         except Escaped:
             return Settled("escaped")
         except Stopped:
@@ -174,9 +174,9 @@ class FlowPopulation(StartsInBox):
             size=size,
         )
 
-    def _recurring(self, way: Sequence[Place], values: Mapping[str, float], p: float) -> CycleOrbit | None:
+    def _recurring(self, path: Sequence[Place], values: Mapping[str, float], p: float) -> CycleOrbit | None:
         """The stable cycle that a motion has already followed for a period; None if there is none."""
-        last = last_round(self.field, p, way, LONGEST)
+        last = last_round(self.field, p, path, LONGEST)
         if last is None:
             return None
         try:
@@ -290,13 +290,13 @@ class Settling:
             for _ in range(steps if period is None else periods):
                 left = self.left
                 if period is None:
-                    march.go(left, BLOCK, far=far, ways=ways)
+                    march.go(left, BLOCK, far=far, paths=ways)
                 else:
                     rounds += BLOCK_PERIODS
                     march.go(left, MOST_STEPS, until=rounds * period, far=far)
-                gone = left[~np.isfinite(march.x[left]).all(axis=1)]
-                self._add(Settled("escaped"), gone[~march.stopped[gone]])
-                self._add(Settled("stopped"), gone[march.stopped[gone]])
+                ended = left[~np.isfinite(march.x[left]).all(axis=1)]
+                self._add(Settled("escaped"), ended[~march.stopped[ended]])
+                self._add(Settled("stopped"), ended[march.stopped[ended]])
                 for k in range(len(self.motions)):
                     self._assign(k)
                 if not self.left.size:
@@ -306,12 +306,12 @@ class Settling:
         if left.size:
             self._add(self.population.irregular(march.x[left[:BLOCKS]], self.p), left)
 
-    def _add(self, motion: Settled, which: np.ndarray) -> None:
+    def _add(self, motion: Settled, starts: np.ndarray) -> None:
         """Assign starts to a motion without a curve: escaped, stopped, or irregular."""
-        if not which.size:
+        if not starts.size:
             return
         same = [k for k, m in enumerate(self.motions) if m.kind == motion.kind and m.curve is None]
-        self.index[which] = same[0] if same else len(self.motions)
+        self.index[starts] = same[0] if same else len(self.motions)
         if not same:
             self.motions.append(motion)
 
@@ -350,8 +350,8 @@ class Settling:
                 self._assign(k)
 
     def _same(self, one: Settled, other: Settled) -> bool:
-        alike = one.word == other.word and one.periods == other.periods
-        return alike and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
+        same_type = one.word == other.word and one.periods == other.periods
+        return same_type and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
 
     def _along(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
         """Whether a motion lies on the curve of another one of a given size."""

@@ -123,8 +123,8 @@ class FlowProblem(Flow):
         d = len(self.x0)
         self.given_states, self.states = states, checked_names(states, d)
         self.of_states = {
-            self.measure_of(what, state): (what, j)
-            for what in OF_STATES
+            self.measure_of(extreme, state): (extreme, j)
+            for extreme in OF_STATES
             for j, state in enumerate(self.states)
         }
         self.given_period, self.given_scale = period, scale
@@ -433,8 +433,8 @@ class FlowProblem(Flow):
         own = np.concatenate([curve.min(axis=0), curve.max(axis=0)])
         if image is not None:
             other = np.concatenate([image.min(axis=0), image.max(axis=0)])
-            apart = np.flatnonzero(np.abs(own - other) > self.settings.near * np.abs(own).max())
-            own = other if apart.size and other[apart[0]] > own[apart[0]] else own
+            different = np.flatnonzero(np.abs(own - other) > self.settings.near * np.abs(own).max())
+            own = other if different.size and other[different[0]] > own[different[0]] else own
         return own.tolist()
 
     def describe(self) -> dict[str, Any]:

@@ -59,11 +59,11 @@ class ReturnMap:
         if problem.free_period:
             speed = self.field(self.start[None, :], self.p)[0]
             plane = np.linalg.qr(speed[:, None], mode="complete")[0][:, 1:]
-            across = np.linalg.qr(plane / self.scale[:, None])[0]
+            plane_basis = np.linalg.qr(plane / self.scale[:, None])[0]
             self.normal = speed / np.linalg.norm(speed)
         else:
-            across, self.normal = np.eye(self.node), np.zeros(self.node)
-        self.basis, self.inverse = self.scale[:, None] * across, across.T / self.scale
+            plane_basis, self.normal = np.eye(self.node), np.zeros(self.node)
+        self.basis, self.inverse = self.scale[:, None] * plane_basis, plane_basis.T / self.scale
 
     def states(self, y: np.ndarray) -> np.ndarray:
         """Return the states at points of the section, shape (n, d)."""
@@ -91,13 +91,13 @@ class ReturnMap:
         with np.errstate(all="ignore"):
             for i in range(len(self.widths) + self.problem.free_period):
                 through = self._through(i, x, p) if i < len(self.widths) else self._onto_plane(x, p)
-                x, nodes, steps, times, by = through
+                x, nodes, steps, times, by_parameter = through
                 if derivatives:
-                    own = self._varied(nodes, steps, p, times, by)
+                    own = self._varied(nodes, steps, p, times, by_parameter)
                     if i == len(self.widths):
                         speed = self._rates(x, p)
-                        off = np.einsum("a,nab->nb", self.normal, own) / (speed @ self.normal)[:, None]
-                        own = own - speed[:, :, None] * off[:, None, :]
+                        delays = np.einsum("a,nab->nb", self.normal, own) / (speed @ self.normal)[:, None]
+                        own = own - speed[:, :, None] * delays[:, None, :]
                     total = np.matmul(own[:, :, :d], total)
                     total[:, :, d] += own[:, :, d]
         return x, total
@@ -113,13 +113,13 @@ class ReturnMap:
         def times(q: complex) -> np.ndarray | None:
             return np.tile(length(q) * places, count) if field.forced else None
 
-        def by(points: np.ndarray) -> np.ndarray:
+        def by_parameter(points: np.ndarray) -> np.ndarray:
             return field.along(lambda q: length(q) * width * field(points, q, times(q)), p)
 
-        steps, when = np.full(count, float(np.real(length(p))) * width), times(p)
+        steps, time = np.full(count, float(np.real(length(p))) * width), times(p)
         guess = self.nodes[i][None, 1:] + (x - self.nodes[i, 0])[:, None, :]
-        nodes = self._solved(x, guess, steps, p, when, self.nodes[i][None])
-        return nodes[:, -1], nodes, steps, when, by
+        nodes = self._solved(x, guess, steps, p, time, self.nodes[i][None])
+        return nodes[:, -1], nodes, steps, time, by_parameter
 
     def _onto_plane(self, x: np.ndarray, p: float) -> Flight:
         """Compute motions onto the plane, by one step of a duration of its own for each."""
@@ -127,7 +127,7 @@ class ReturnMap:
         def until(x: np.ndarray) -> np.ndarray:
             return -((x - self.start) @ self.normal) / (self._rates(x, p) @ self.normal)
 
-        def by(points: np.ndarray) -> np.ndarray:
+        def by_parameter(points: np.ndarray) -> np.ndarray:
             return np.repeat(time, self.rule.degree)[:, None] * self.field.slope(points, p)
 
         time, nodes = until(x), np.repeat(x[:, None, :], self.rule.degree + 1, axis=1)
@@ -140,7 +140,7 @@ class ReturnMap:
         nodes = self._solved(x, nodes[:, 1:], time, p, None)
         end = nodes[:, -1].copy()
         end[~(np.abs(time) < 0.5 * self.period)] = np.nan
-        return end, nodes, time, None, by
+        return end, nodes, time, None, by_parameter
 
     def _varied(
         self,
@@ -148,12 +148,12 @@ class ReturnMap:
         steps: np.ndarray,
         p: float,
         times: np.ndarray | None,
-        by: Callable[[np.ndarray], np.ndarray],
+        by_parameter: Callable[[np.ndarray], np.ndarray],
     ) -> np.ndarray:
         """Derivatives of the ends by the initial states and, in the last column, by the parameter, shape (n, d, d + 1)."""
         d, inner = self.node, self.rule.degree * self.node
         slopes, points = self._slopes(nodes, steps, p, times), self._points(nodes)
-        last = by(points) if np.isfinite(points).all() else np.zeros_like(points)
+        last = by_parameter(points) if np.isfinite(points).all() else np.zeros_like(points)
         sides = np.concatenate([-slopes[..., :d], last.reshape(-1, inner, 1)], axis=2)
         return self._linear(slopes[..., d:], sides)[:, -d:]
 
@@ -173,11 +173,11 @@ class ReturnMap:
         steps: np.ndarray,
         p: float,
         times: np.ndarray | None,
-        beside: np.ndarray | None = None,
+        base: np.ndarray | None = None,
     ) -> np.ndarray:
         """Solve for the values at the nodes, shape (n, m + 1, d), from a guess of all but the first; NaN where Newton's method fails.
 
-        The Jacobian at a known motion, `beside`, is used for all motions while corrections shrink quickly, then the Jacobian of each motion.
+        The Jacobian at a known motion, `base`, is used for all motions while corrections shrink quickly, then the Jacobian of each motion.
         """
         d, inner, count = self.node, self.rule.degree * self.node, len(x)
         nodes, last, inverse = (
@@ -185,14 +185,14 @@ class ReturnMap:
             np.full(count, np.inf),
             np.empty(0),
         )
-        slow, rounded = beside is None, self.field.settings.rounded
+        slow, rounded = base is None, self.field.settings.rounded
         for sweep in range(SWEEPS):
             if slow or sweep == 0:
-                if beside is None or slow:
+                if base is None or slow:
                     slopes = self._slopes(nodes, steps, p, times)
                 else:
                     own = None if times is None else times[: self.rule.degree]
-                    slopes = self._slopes(beside, steps[:1], p, own)
+                    slopes = self._slopes(base, steps[:1], p, own)
                 inverse = self._linear(
                     slopes[..., d:], np.broadcast_to(np.eye(inner), (len(slopes), inner, inner))
                 )
@@ -284,10 +284,10 @@ class FlowSection:
             return mesh.evaluate(problem.rule, widths, x, np.arange(problem.rounds) / problem.rounds)
         place, h = 0.0, CENTRAL
         for _ in range(SWEEPS):
-            here, ahead, back = mesh.evaluate(
+            point, ahead, back = mesh.evaluate(
                 problem.rule, widths, x, np.array([place, place + h, place - h])
             )
-            change = -2.0 * h * float((here - r.start) @ r.normal) / float((ahead - back) @ r.normal)
+            change = -2.0 * h * float((point - r.start) @ r.normal) / float((ahead - back) @ r.normal)
             place += change
             if abs(change) < SOLVED:
                 break
@@ -322,6 +322,6 @@ class FlowSection:
         """Return the next points (n, k), their derivatives by the points, (n, k, k), and by the parameter, (n, k)."""
         r = self.returns
         found, by_state, by_value = r.varied(r.coordinates(self._states(points)), self.p)
-        out, into = r.basis[self.columns], r.inverse @ self.chart
-        slopes = np.einsum("ka,nab,bl->nkl", out, by_state, into)
-        return r.states(found)[:, self.columns], slopes, by_value @ out.T
+        chart, lift = r.basis[self.columns], r.inverse @ self.chart
+        slopes = np.einsum("ka,nab,bl->nkl", chart, by_state, lift)
+        return r.states(found)[:, self.columns], slopes, by_value @ chart.T

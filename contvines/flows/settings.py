@@ -108,10 +108,10 @@ class FlowSettings:
             return given
         if not isinstance(given, Mapping | None):
             raise ValueError(f"settings = {given!r} must be values by name, such as {{'longest': 1e4}}")
-        known = [field.name for field in fields(cls)]
+        names = [field.name for field in fields(cls)]
         for name, value in (given or {}).items():
-            if name not in known:
-                raise ValueError(f"settings: there is no {name!r} of a flow{did_you_mean(name, known)}")
+            if name not in names:
+                raise ValueError(f"settings: there is no {name!r} of a flow{did_you_mean(name, names)}")
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0.0:
                 raise ValueError(f"settings: {name} = {value!r} must be a positive number")
         return cls(**(given or {}))

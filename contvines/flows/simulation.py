@@ -51,7 +51,7 @@ class Place(NamedTuple):
     rate: np.ndarray
 
 
-class Way:
+class Interpolant:
     """A motion through given places, interpolated by cubic Hermite polynomials; it has the interface of scipy's results."""
 
     def __init__(self, places: Sequence[Place]) -> None:
@@ -190,8 +190,8 @@ def _free(
         doublings -= len(run.t) > BRIEF
         brief += len(run.t) <= BRIEF
         ranges = np.ptp(run.y, axis=1)
-        still = (ranges <= s.still * (field.lengths + np.abs(x))).all()
-        rest = x if still else _rest(field, p, run.y[:, -1])
+        resting = (ranges <= s.still * (field.lengths + np.abs(x))).all()
+        rest = x if resting else _rest(field, p, run.y[:, -1])
         if rest is not None:
             raise AtRest(rest)
         plane, unit = _fastest(field, p, run)
@@ -216,15 +216,15 @@ def last_round(
     settled = places[len(places) // 2 :]
     if len(settled) < 2:
         return None
-    way, (plane, unit) = Way(places), _fastest(field, p, Way(settled))
-    found = _returned(way, plane, field.settings.recurs * unit, longest)
+    motion, (plane, unit) = Interpolant(places), _fastest(field, p, Interpolant(settled))
+    found = _returned(motion, plane, field.settings.recurs * unit, longest)
     if found is None:
         return None
     times = np.linspace(*found, SAMPLES + 1)
-    return times, way.sol(times).T
+    return times, motion.sol(times).T
 
 
-def _fastest(field: Field, p: float, run: OdeResult | Way) -> tuple[Place, np.ndarray]:
+def _fastest(field: Field, p: float, run: OdeResult | Interpolant) -> tuple[Place, np.ndarray]:
     """The place at which a motion is fastest relative to its size, with its rate divided by the squared sizes (normal of a plane), and the sizes."""
     own = np.ptp(run.y, axis=1) / field.lengths
     unit = field.lengths * np.maximum(own, field.settings.least * own.max())
@@ -245,7 +245,7 @@ def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
 
 
 def _returned(
-    run: OdeResult | Way, plane: Place, close: np.ndarray, longest: int
+    run: OdeResult | Interpolant, plane: Place, close: np.ndarray, longest: int
 ) -> tuple[float, float] | None:
     """The last two times at which a motion crosses a plane in the same state; None if it does not return to the same state."""
     heights = plane.rate @ (run.y - plane.x[:, None])
@@ -261,7 +261,7 @@ def _returned(
     return None
 
 
-def _crossing(run: OdeResult | Way, plane: Place, i: int) -> float:
+def _crossing(run: OdeResult | Interpolant, plane: Place, i: int) -> float:
     """Time at which a motion crosses a plane within step i of the integrator, by bisection."""
     low, high = float(run.t[i]), float(run.t[i + 1])
     for _ in range(60):
@@ -325,11 +325,11 @@ class March:
         steps: int,
         until: float = np.inf,
         far: float = np.inf,
-        ways: Mapping[int, list[Place]] | None = None,
+        paths: Mapping[int, list[Place]] | None = None,
     ) -> None:
         """Integrate the motions `rows` for a number of steps, or until a time; a motion that fails or moves beyond `far` sizes becomes NaN.
 
-        `ways` collects the places after each step, for the motions that are its keys.
+        `paths` collects the places after each step, for the motions that are its keys.
         """
         relative, absolute = self.field.settings.rough_relative, self.field.settings.rough_absolute
         for _ in range(steps):
@@ -351,9 +351,9 @@ class March:
             good = error <= 1.0
             took = rows[good]
             self.x[took], self.t[took], self.slope[took] = new[good], (t + h)[good], k[6][good]
-            for i, way in (ways or {}).items():
+            for i, path in (paths or {}).items():
                 if good[rows == i].any():
-                    way.append(Place(float(self.t[i]), self.x[i].copy(), self.slope[i].copy()))
+                    path.append(Place(float(self.t[i]), self.x[i].copy(), self.slope[i].copy()))
             self._stop(took)
             whole = h == self.h[rows]
             with np.errstate(all="ignore"):

@@ -160,15 +160,15 @@ def leading_multipliers(
         along = speed / size
         missed = float(np.linalg.norm(round_once(along) - along))
 
-    def across(v: np.ndarray) -> np.ndarray:
+    def return_map(v: np.ndarray) -> np.ndarray:
         v = np.ravel(v)
         image = round_once(v - along * (along @ v))
         return image - along * (along @ image)
 
     if count >= d - 1:
-        values = np.linalg.eigvals(np.column_stack([across(v) for v in np.eye(d)]))
+        values = np.linalg.eigvals(np.column_stack([return_map(v) for v in np.eye(d)]))
     else:
-        operator = LinearOperator((d, d), matvec=across, dtype=float)  # type: ignore[call-arg]
+        operator = LinearOperator((d, d), matvec=return_map, dtype=float)  # type: ignore[call-arg]
         v0 = np.random.default_rng(7).standard_normal(d)
         try:
             options: dict[str, Any] = {

@@ -191,8 +191,8 @@ class CycleWork:
         tail = np.arange(size)[problem.held]
         entries = [(blocks, rows, columns), (np.ones(len(tail)), tail, tail)]
         if problem.free_period:
-            there, last = np.arange(states), np.full(states, states)
-            entries += [(self.by_period, there, last), (self.phase, last, there)]
+            indices, last = np.arange(states), np.full(states, states)
+            entries += [(self.by_period, indices, last), (self.phase, last, indices)]
             entries += [(np.array([self.corner]), last[:1], last[:1])]
         values, i, j = (np.concatenate([np.ravel(entry[k]) for entry in entries]) for k in range(3))
         return csc_array((values, (i, j)), shape=(size, size))
@@ -249,11 +249,11 @@ class CycleWork:
         """
         steps, sizes = -np.linalg.solve(right, left), np.linalg.norm(speeds, axis=1)
         units = speeds / sizes[:, None]
-        here = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]
-        there = np.roll(here, -1, axis=0)
+        plane = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]
+        next_plane = np.roll(plane, -1, axis=0)
         along = np.einsum("ij,ijk,ik->i", np.roll(units, -1, axis=0), steps, units)
         growth = along * sizes / np.roll(sizes, -1)
-        return np.matmul(there.transpose(0, 2, 1), np.matmul(steps, here)), float(np.prod(growth))
+        return np.matmul(next_plane.transpose(0, 2, 1), np.matmul(steps, plane)), float(np.prod(growth))
 
     def distance_to_rest(self) -> float:
         """Return the length of the shortest Newton step to an equilibrium from the Gauss points, in units of the scale; infinite if there is none."""
