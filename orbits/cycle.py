@@ -136,9 +136,9 @@ class Cycle:
             return replace(self, word=word, periods=periods, nodes=nodes)
         if self.periods == 1:
             return self
-        alike = np.abs(self.flow.strobed(self)[1:] - self.nodes[0, 1:]).max(axis=1) < same
-        again = [k for k in range(1, self.periods) if self.periods % k == 0 and alike[k - 1]]
-        return replace(self, periods=min(again, default=self.periods))
+        recurs = np.abs(self.flow.strobed(self)[1:] - self.nodes[0, 1:]).max(axis=1) < same
+        divisors = [k for k in range(1, self.periods) if self.periods % k == 0 and recurs[k - 1]]
+        return replace(self, periods=min(divisors, default=self.periods))
 
     def repeat(self, times: int) -> Self:
         """Return the same orbit, written `times` times."""

@@ -186,16 +186,16 @@ class Orbit(Cycle):
 
     def positions(self, instants: int) -> np.ndarray:
         """Return coordinates without jumps at `instants` equal phases of each forcing period, shape (instants * periods, c); cached."""
-        known = vars(self).setdefault("_tracks", {})
-        if instants not in known:
-            known[instants] = self.flow.positions(self, instants)
-        return known[instants]
+        tracks = vars(self).setdefault("_tracks", {})
+        if instants not in tracks:
+            tracks[instants] = self.flow.positions(self, instants)
+        return tracks[instants]
 
     def repeat(self, times: int) -> Self:
         """Return the same orbit, written `times` times."""
         found = super().repeat(times)
-        known = vars(self).get("_tracks", {})
-        vars(found)["_tracks"] = {instants: np.tile(track, (times, 1)) for instants, track in known.items()}
+        tracks = vars(self).get("_tracks", {})
+        vars(found)["_tracks"] = {instants: np.tile(track, (times, 1)) for instants, track in tracks.items()}
         return found
 
     def replay(self) -> float:
@@ -325,8 +325,8 @@ def gap(border: Orbit, near: Orbit) -> float:
     if border.periods != near.periods or not border.forced:
         return distance(border, near)
     unit = border.model.natural_units(border.params)[0]
-    apart = border.positions(INSTANTS) - near.positions(INSTANTS)
-    return float(_largest(apart, _free(border, near))) / unit
+    differences = border.positions(INSTANTS) - near.positions(INSTANTS)
+    return float(_largest(differences, _free(border, near))) / unit
 
 
 def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER_PERIOD) -> float:
@@ -343,24 +343,24 @@ def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER
     if one.periods == other.periods == 1 and not mirror:
         return float(_largest(one.positions(instants) - other.positions(instants), free)) / unit
     periods = math.lcm(one.periods, other.periods)
-    here, there = (
+    first, second = (
         orbit.positions(instants)
         if orbit.periods == periods
         else np.tile(orbit.positions(instants), (periods // orbit.periods, 1))
         for orbit in (one, other)
     )
-    images = [here]
+    images = [first]
     if mirror:
-        images.append(2.0 * float(one.model.middle(one.params)) - np.roll(here, -instants // 2, axis=0))
+        images.append(2.0 * float(one.model.middle(one.params)) - np.roll(first, -instants // 2, axis=0))
     best = np.inf
-    turned = (instants * np.arange(one.periods)[:, None] + np.arange(0, len(here), COARSE)) % len(here)
+    turned = (instants * np.arange(one.periods)[:, None] + np.arange(0, len(first), COARSE)) % len(first)
     for image in images:
-        rough = _largest(image[turned] - there[::COARSE], free)
+        rough = _largest(image[turned] - second[::COARSE], free)
         for shift in np.argsort(rough, kind="stable").tolist() if len(rough) > 1 else (0,):
             if rough[shift] >= best:
                 break
             moved = np.roll(image, -instants * shift, axis=0) if shift else image
-            best = min(best, float(_largest(moved - there, free)))
+            best = min(best, float(_largest(moved - second, free)))
     return best / unit
 
 

@@ -150,8 +150,8 @@ class Motions(CycleProblem):
         self, word: Word, periods: int, symmetric: bool
     ) -> Callable[[np.ndarray], tuple[CycleProblem, np.ndarray]]:
         """Return a function that takes a solution which is its own image to (problem of a shorter word, its unknowns there)."""
-        made = cache(lambda: self.sibling(word, periods, symmetric))
-        return lambda u: (made(), made().reduce(self.expand(u)))
+        shorter = cache(lambda: self.sibling(word, periods, symmetric))
+        return lambda u: (shorter(), shorter().reduce(self.expand(u)))
 
     def _mirrored_on(self, places: int) -> Symmetry:
         periods = 2 * self.periods * places // self.length if self.forced else 1

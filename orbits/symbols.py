@@ -25,9 +25,9 @@ class NotAnalytic(TypeError):
     """A formula of a machine file applies an operation to a symbol that is not analytic, for example a comparison."""
 
 
-def _refuse(what: str) -> NoReturn:
+def _refuse(operation: str) -> NoReturn:
     raise NotAnalytic(
-        f"{what} of a symbol has no single formula, and a flight must be analytic; where a law changes at a surface, "
+        f"{operation} of a symbol has no single formula, and a flight must be analytic; where a law changes at a surface, "
         "declare a Switch with that surface and use its contact.<name>, which is +1 or -1"
     )
 
@@ -53,12 +53,12 @@ class Symbol:
 
     def __new__(cls, operation: str, *operands: Symbol | str | float) -> Symbol:
         key = (operation, *(id(x) if isinstance(x, Symbol) else repr(x) for x in operands))
-        made = _MADE.get(key)
-        if made is None:
-            made = object.__new__(cls)
-            made.operation, made.operands = operation, operands
-            _MADE[key] = made
-        return made
+        symbol = _MADE.get(key)
+        if symbol is None:
+            symbol = object.__new__(cls)
+            symbol.operation, symbol.operands = operation, operands
+            _MADE[key] = symbol
+        return symbol
 
     def __reduce__(self) -> tuple[type[Symbol], tuple]:
         return Symbol, (self.operation, *self.operands)
@@ -183,8 +183,8 @@ for _name in ("sin", "cos", "tan"):
     setattr(Symbol, f"arc{_name}", _method(f"a{_name}"))
 
 
-def _refusing(what: str) -> Callable[..., NoReturn]:
-    return lambda self, *other: _refuse(what)
+def _refusing(operation: str) -> Callable[..., NoReturn]:
+    return lambda self, *other: _refuse(operation)
 
 
 for _name, _sign in {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}.items():
@@ -209,12 +209,12 @@ class Elementary(Protocol):
     def __call__(self, x: np.ndarray, /) -> np.ndarray: ...
 
 
-def _elementary(name: str, numeric: Callable, says: str) -> Elementary:
+def _elementary(name: str, numeric: Callable, description: str) -> Elementary:
     def function(x: Plain, /):
         return numeric(x)  # numpy calls the method of a symbol
 
     function.__name__ = function.__qualname__ = name
-    function.__doc__ = f"{says}, on a number, an array or a symbol."
+    function.__doc__ = f"{description}, on a number, an array or a symbol."
     return function
 
 

@@ -199,7 +199,7 @@ class Attractor:
             If no word describes it.
         """
         if self.orbit is None:
-            why = {
+            reason = {
                 "chatter": "impacts pile up on it, so no finite word describes it",
                 "sliding": "without friction nothing happens on it",
                 "rest": "a wall holds the body for good"
@@ -207,7 +207,7 @@ class Attractor:
                 else "it has come to rest; contvines.diagram(machine.smooth(state), ...) follows equilibria",
             }.get(self.kind, "no period was found")
             raise ValueError(
-                f"this attractor of {self.model.name!r} is no orbit that can be continued ({self.kind}: {why}); choose other "
+                f"this attractor of {self.model.name!r} is no orbit that can be continued ({self.kind}: {reason}); choose other "
                 "parameters or another start, or give a word to machine.orbit"
             )
         return self.orbit
@@ -247,12 +247,12 @@ class Attractor:
     def dots(self) -> list[float]:
         """Ordinates of the impacts in a bifurcation picture, from the word's first event on; of the trajectory if the motion is not periodic."""
         run, first = self.trajectory, self.first
-        shown = np.array(run.shown(first))
-        if self.orbit is not None and self.model.forced and len(shown) > 1:
+        ordinates = np.array(run.shown(first))
+        if self.orbit is not None and self.model.forced and len(ordinates) > 1:
             began = self.orbit.nodes[self._reading[1], 0] - REPLAYING.close
-            since = run.clocks[1:][first:][run.hits[first:]] - began
-            shown = shown[np.argsort(since % (2.0 * np.pi * self.periods))]
-        return shown.tolist()
+            times = run.clocks[1:][first:][run.hits[first:]] - began
+            ordinates = ordinates[np.argsort(times % (2.0 * np.pi * self.periods))]
+        return ordinates.tolist()
 
     def simulator(self) -> Simulator:
         """A simulator at `state`."""
@@ -269,8 +269,8 @@ class Attractor:
     def distance(self, other: Attractor) -> float:
         """Largest difference of the canonical nodes (over rotations, whole periods and the mirror image), relative to 1 + nodes; inf if the words differ."""
         if self.orbit is None or other.orbit is None:
-            alike = self.orbit is other.orbit and (self.kind, self.periods) == (other.kind, other.periods)
-            return 0.0 if alike and self.text == other.text else np.inf
+            same = self.orbit is other.orbit and (self.kind, self.periods) == (other.kind, other.periods)
+            return 0.0 if same and self.text == other.text else np.inf
         forms = []
         for orbit in (self.orbit, other.orbit):
             problem = orbit.problem(symmetric=False)
@@ -292,31 +292,31 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
     first, longest = simulator.observed
     tally = _Tally(simulator)
     if found.recurrent:
-        seen = tally.go_on(
+        observed = tally.go_on(
             (found.periods or 1) + SIMULATING.whole, INSTANTS
         )  # so that the first event is met again
-        speed = seen.impact_speed if found.impacts else 0.0
-        return replace(seen, impact_speed=speed, impacts_per_period=found.impacts_per_period)
+        speed = observed.impact_speed if found.impacts else 0.0
+        return replace(observed, impact_speed=speed, impacts_per_period=found.impacts_per_period)
     if not longest:
         return tally.go_on(least) if least else tally.add(found.trajectory)
     length, before = first, tally.go_on(first)
     while tally.moving and length < longest:
         length *= 2.0
-        now = tally.go_on(length)
-        if now.near(before):
-            return now
-        before = now
+        latest = tally.go_on(length)
+        if latest.near(before):
+            return latest
+        before = latest
     return before
 
 
-def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
+def lasting(found: Attractor, observed: Observation | None = None) -> Attractor:
     """Return the attractor with kind and impacts from its long-time statistics; periodic motions and rest are returned unchanged."""
     simulator = found.simulator()
     if found.recurrent or found.kind == simulator.resting or not simulator.observed[1]:
         return found
-    seen = seen or observe(found)
-    kind = "chatter" if seen.contacts * OFTEN >= seen.periods else simulator.wandering
-    return replace(found, kind=kind, seen=seen)
+    observed = observed or observe(found)
+    kind = "chatter" if observed.contacts * OFTEN >= observed.periods else simulator.wandering
+    return replace(found, kind=kind, seen=observed)
 
 
 def measure_names(model: Varying) -> tuple[str, ...]:
@@ -337,22 +337,22 @@ def described(found: Attractor, least: float = 0.0) -> tuple[Attractor, dict[str
     """Return the attractor with kind and impacts from its long-time statistics (see `observe`), and its measures by name (see `measure_names`)."""
     model, params, orbit, flow = found.model, found.params, found.orbit, flow_of(found.model)
     names = measure_names(model)
-    known = dict.fromkeys(names, np.nan)
+    numbers = dict.fromkeys(names, np.nan)
     speed = next(name for name in names if name.endswith("_speed"))
     if orbit is not None and len(orbit.nodes) and not flow.loose(model, orbit.word):
         own = flow.measure_names(model)
         taken = orbit.measures(*(name for name in names if name in own))
-        known |= {speed: 0.0, **taken, "impacts_per_period": found.impacts_per_period}
-        return found, known
-    seen = observe(found, least)
-    rate = seen.impacts_per_period / (1.0 if model.forced else 2.0 * np.pi)
-    known |= {**seen.extremes, speed: seen.impact_speed, "impacts_per_period": rate}
+        numbers |= {speed: 0.0, **taken, "impacts_per_period": found.impacts_per_period}
+        return found, numbers
+    observed = observe(found, least)
+    rate = observed.impacts_per_period / (1.0 if model.forced else 2.0 * np.pi)
+    numbers |= {**observed.extremes, speed: observed.impact_speed, "impacts_per_period": rate}
     simulator = found.simulator()
     if BAND[0] in names and not found.recurrent and found.kind != simulator.resting:
         periods = simulator.modulated
         run = simulator.run(periods, int(PERIOD_EVENTS * (periods + 1))) if periods else found.trajectory
-        known |= modulation(run).measures
-    return lasting(found, seen), flow.in_units(model, params, known)
+        numbers |= modulation(run).measures
+    return lasting(found, observed), flow.in_units(model, params, numbers)
 
 
 def modulated(found: Attractor, measures: Mapping[str, float]) -> str:
@@ -380,14 +380,14 @@ class _Tally:
 
     def add(self, run: Trajectory, per_period: int = 0) -> Observation:
         """Add one piece to the statistics."""
-        seen, extremes = self.seen, run.extremes(per_period)
-        for name, value in seen.extremes.items():
+        total, extremes = self.seen, run.extremes(per_period)
+        for name, value in total.extremes.items():
             extremes[name] = (min if name.startswith("min_") else max)(value, extremes[name])
-        impacts = round(seen.impacts_per_period * seen.periods) + run.impacts
-        periods = seen.periods + run.lasted
-        speed = max(seen.impact_speed, float(run.approaches().max(initial=0.0)))
+        impacts = round(total.impacts_per_period * total.periods) + run.impacts
+        periods = total.periods + run.lasted
+        speed = max(total.impact_speed, float(run.approaches().max(initial=0.0)))
         rate = impacts / periods if periods > 0.0 else 0.0
-        self.seen = Observation(periods, extremes, speed, rate, seen.contacts + run.chatters)
+        self.seen = Observation(periods, extremes, speed, rate, total.contacts + run.chatters)
         return self.seen
 
 

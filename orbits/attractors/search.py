@@ -49,10 +49,12 @@ def find_attractor(
         raise SimulationError(f"transient = {transient}: give a number of forcing periods, 0 or above")
     simulator = simulator_of(model, model.vector(parameters))
     simulator.put(start)
-    how = simulator.waiting
-    length = how.transient if transient is None else transient
-    tries = how.tries if patience is None else patience
-    found = attracted(simulator, length, max_period, how.returned if tolerance is None else tolerance, tries)
+    waiting = simulator.waiting
+    length = waiting.transient if transient is None else transient
+    tries = waiting.tries if patience is None else patience
+    found = attracted(
+        simulator, length, max_period, waiting.returned if tolerance is None else tolerance, tries
+    )
     return lasting(found) if observed else found
 
 
@@ -75,9 +77,9 @@ def met(
 
 def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Attractor:
     """Attractor reached from the simulator's present state; the simulator is advanced. `patience`: prolongations of the transient, None for those of a sweep."""
-    how = simulator.waiting
-    tries = how.in_sweeps if patience is None else patience
-    return attracted(simulator, transient, max_period, how.returned, tries)
+    waiting = simulator.waiting
+    tries = waiting.in_sweeps if patience is None else patience
+    return attracted(simulator, transient, max_period, waiting.returned, tries)
 
 
 def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str, float]:
@@ -106,7 +108,7 @@ def different_attractors(
                 refused = error
         else:
             raise SimulationError(f"no start with states within {size:g} could be simulated: {refused}")
-        if not any(one.distance(known) < SIMULATING.same for known in found):
+        if not any(one.distance(other) < SIMULATING.same for other in found):
             found.append(one)
     return found
 
@@ -132,7 +134,7 @@ def attracted(
     patience : int
         Number of prolongations of the transient.
     """
-    waiting, model, begun = simulator.waiting, simulator.model, simulator.time
+    waiting, model, start_time = simulator.waiting, simulator.model, simulator.time
     early = transient // waiting.early if waiting.early else 0
     if early:
         simulator.skip(early)
@@ -163,9 +165,9 @@ def attracted(
             continue
         # Near a bifurcation a motion may return but for a drift that decays or grows: continue as long as the drift changes.
         # A difference that stays the same belongs to a longer cycle or to narrow chaotic bands.
-        now = next(iter(returns(run, max_period, SIMULATING.nearly)), None)
-        drifts, before = _drifts(before, now), now
-        waited = patience > 0 and simulator.time - begun < waiting.slow and drifts
+        latest = next(iter(returns(run, max_period, SIMULATING.nearly)), None)
+        drifts, before = _drifts(before, latest), latest
+        waited = patience > 0 and simulator.time - start_time < waiting.slow and drifts
         last = last and not waited
         for near in (tolerance, SIMULATING.nearly) if last or attempt else (tolerance,):
             for found in _candidates(simulator, run, max_period, near):
@@ -232,31 +234,31 @@ def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int
         return
     clocks, points, forced = run.clocks[1:], run.points, run.model.forced
     size = 1.0 + float(np.abs(points).max())
-    alike = labels[: n - 1] == labels[-1]
+    same = labels[: n - 1] == labels[-1]
     turns = (clocks[-1] - clocks[: n - 1]) / TWO_PI
     whole = np.round(turns) if forced else np.ones(n - 1)
     if forced:
-        alike &= (np.abs(turns - whole) * TWO_PI < near * size) & (whole >= 1)
-    for j in np.flatnonzero(alike)[::-1]:
+        same &= (np.abs(turns - whole) * TWO_PI < near * size) & (whole >= 1)
+    for j in np.flatnonzero(same)[::-1]:
         length, periods = n - 1 - int(j), int(whole[j])
         if periods > max_period or 2 * length > n:
             return
-        here, before = slice(n - length, n), slice(n - 2 * length, n - length)
-        if not np.array_equal(labels[here], labels[before]):
+        last, before = slice(n - length, n), slice(n - 2 * length, n - length)
+        if not np.array_equal(labels[last], labels[before]):
             continue
-        gap = float(np.abs(points[here] - points[before]).max()) / size
+        gap = float(np.abs(points[last] - points[before]).max()) / size
         if forced:
-            late = clocks[here] - clocks[before] - TWO_PI * periods
+            late = clocks[last] - clocks[before] - TWO_PI * periods
             gap = max(gap, float(np.abs(late).max()) / size)
         if gap < near:
             yield length, periods, max(gap, np.finfo(float).tiny)
 
 
-def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] | None) -> bool:
+def _drifts(before: tuple[int, int, float] | None, latest: tuple[int, int, float] | None) -> bool:
     """Whether two successive looks found the same return with a difference that grows or decays."""
-    if before is None or now is None or before[:2] != now[:2]:
+    if before is None or latest is None or before[:2] != latest[:2]:
         return False
-    return not 1.0 / DRIFTS < now[2] / before[2] < DRIFTS
+    return not 1.0 / DRIFTS < latest[2] / before[2] < DRIFTS
 
 
 def solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:

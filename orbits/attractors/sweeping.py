@@ -122,9 +122,9 @@ def sweep(
         simulator = simulator_of(model, params)
         simulator.go_on(state, nudge)
         found, measures = described(goes_on(simulator, transient, max_period, None))
-        how = modulated(found, measures) if exponents else ""
+        text = modulated(found, measures) if exponents else ""
         row = SweepRow(
-            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found, how
+            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found, text
         )
         state = found.state
         rows.append(row)

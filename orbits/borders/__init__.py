@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.attractors.search import goes_on
-from orbits.borders.neighbours import Grown, followed, margins_of, parameter_unit, placed, proposals
+from orbits.borders.neighbours import BranchAtBorder, followed, margins_of, parameter_unit, placed, proposals
 from orbits.borders.rounds import escapes
 from orbits.contacts import HIT, SLIP, STICK, TURN
 from orbits.cycle import canonical, size_of_one
@@ -109,13 +109,13 @@ def _with_word(seed: Seed) -> Seed:
     return seed._replace(note=f"{seed.note}, the word becomes {text}")
 
 
-def _simplest(found: Grown, orbit: Orbit) -> Grown:
+def _simplest(found: BranchAtBorder, orbit: Orbit) -> BranchAtBorder:
     """The same orbit in the smallest problem: as a shorter orbit if it repeats one, as a symmetric one if it is its own mirror image."""
     problem, root = found.problem, orbit.root()
     smallest = problem.sibling(root.word, root.periods, root.symmetric)
     if smallest.periods == problem.periods and smallest.symmetric == problem.symmetric:
         return found
-    return Grown(smallest, smallest.reduce(root.nodes), found.p, None)
+    return BranchAtBorder(smallest, smallest.reduce(root.nodes), found.p, None)
 
 
 def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
@@ -144,33 +144,33 @@ def _real_part(
         best = None
         for side in sides:
             ahead, q = u + side * length * tangent[:-1], p + side * length * float(tangent[-1])
-            there, q, residual, _ = newton(problem.equations, ahead, q, tangent)
+            solution, q, residual, _ = newton(problem.equations, ahead, q, tangent)
             if residual < SOLVING.residual:
-                margin = float(margins_of(problem, there, q)[index])
+                margin = float(margins_of(problem, solution, q)[index])
                 if best is None or margin > best[0]:
-                    best = margin, side, (there, q)
+                    best = margin, side, (solution, q)
         found.append(best and best[2])
         sides = sides if best is None else (best[1],)
     return found
 
 
-def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple[Grown, str]]:
+def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple[BranchAtBorder, str]]:
     """Yield attractors that a simulation reaches from the border orbit at parameter values close to the border, on both sides."""
     orbit = problem.orbit(u, p)
-    here = _key(orbit)
+    own_key = _key(orbit)
     for away, side in product(BORDERING.away, (1.0, -1.0)):
         q = p + side * away * parameter_unit(problem, p)
         found, _ = settled(orbit, problem.values(q))
-        if found is None or (problem.forced and found.periods % problem.periods) or _key(found) == here:
+        if found is None or (problem.forced and found.periods % problem.periods) or _key(found) == own_key:
             continue
-        if not _loses_alike(orbit, found) or distance(orbit, found) > CLOSE:
+        if not _same_friction_loss(orbit, found) or distance(orbit, found) > CLOSE:
             continue
         other = problem.sibling(found.word, found.periods, found.symmetric)
         v = other.reduce(found.nodes)
-        nearer = _nearer(other, v, q, p)
+        nearer = _continued_towards(other, v, q, p)
         if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
             continue  # another attractor, not connected to the border
-        yield Grown(other, v, q, None), "the simulator goes on"
+        yield BranchAtBorder(other, v, q, None), "the simulator goes on"
 
 
 def _key(orbit: Orbit) -> Hashable:
@@ -178,7 +178,7 @@ def _key(orbit: Orbit) -> Hashable:
     return canonical(orbit.word, orbit.periods, orbit.nodes, forced=orbit.forced, same=same)[0]
 
 
-def _loses_alike(one: Orbit, other: Orbit) -> bool:
+def _same_friction_loss(one: Orbit, other: Orbit) -> bool:
     """Whether two motions dissipate about the same energy by friction; True for machines without that measure."""
     if "friction_loss" not in one.flow.measure_names(one.model):
         return True
@@ -187,17 +187,17 @@ def _loses_alike(one: Orbit, other: Orbit) -> bool:
     return bool(abs(losses[0] - losses[1]) <= 0.05 * energy)
 
 
-def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit | None:
+def _continued_towards(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit | None:
     """Continue the orbit at q towards the border at p as far as Newton's method converges; None if it becomes virtual on the way."""
     found = problem.orbit(u, q)
     for part in NEARER:
-        there = p + part * (q - p)
-        u, residual = solved_at(problem.equations, u, there)
+        value = p + part * (q - p)
+        u, residual = solved_at(problem.equations, u, value)
         if not residual < SOLVING.residual:
             break
-        if margins_of(problem, u, there).min() < REAL:
+        if margins_of(problem, u, value).min() < REAL:
             return None
-        found = problem.orbit(u, there)
+        found = problem.orbit(u, value)
     return found
 
 
@@ -239,8 +239,8 @@ def _first_event(orbit: Orbit, before: Orbit) -> int:
     choices = choices or [i for i, kind in enumerate(kinds) if kind == HIT]
     choices = choices or [i for i, kind in enumerate(kinds) if kind != SLIP]
     if not orbit.forced:
-        apart = np.abs(orbit.nodes[:, 1:] - before.nodes[0, 1:]).max(axis=1)
-        return min(choices, key=lambda i: apart[i])
+        gaps = np.abs(orbit.nodes[:, 1:] - before.nodes[0, 1:]).max(axis=1)
+        return min(choices, key=lambda i: gaps[i])
     whole = 2.0 * np.pi * before.periods
     phases, first = orbit.nodes[:, 0].tolist(), float(before.nodes[0, 0])
     return min(choices, key=lambda i: abs((phases[i] - first + 0.5 * whole) % whole - 0.5 * whole))
@@ -337,9 +337,9 @@ def _nearly_vanishing(orbit: Orbit) -> str:
             f"turns pile up at a wall: of those before it the nearest keeps {min(gaps):.1e} of the machine's own length, and a further "
             "one cannot be distinguished from contact"
         )
-    seen = {(m.kind, m.segment): m.value for m in margins}
+    values = {(m.kind, m.segment): m.value for m in margins}
     for place in range(len(word)):
-        pair = seen.get(("duration", place), np.inf), seen.get(("stick", place), np.inf)
+        pair = values.get(("duration", place), np.inf), values.get(("stick", place), np.inf)
         if word.letter(place).kind == STICK and min(pair) > BORDERING.shown and max(pair) < BORDERING.slow:
             return (
                 f"a stick that lasts {pair[0]:.1e} of the machine's own time, with {pair[1]:.1e} of its friction in reserve, is about to "
@@ -350,20 +350,20 @@ def _nearly_vanishing(orbit: Orbit) -> str:
 
 def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
     """Descriptions of the motions that a simulation reaches from the border orbit, above and below the border."""
-    told = {}
+    outcomes = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):
         found, kind = settled(
             orbit, problem.values(p + side * BORDERING.away[0] * parameter_unit(problem, p))
         )
         if found is None:
-            told[name] = ENDS.get(kind, kind)
+            outcomes[name] = ENDS.get(kind, kind)
         elif found.word.canonical().events == orbit.word.canonical().events:
-            told[name] = "stays with this word"
+            outcomes[name] = "stays with this word"
         else:
-            told[name] = f"settles on {found.spelling or 'a motion without events'} elsewhere"
-    if told["above"] == told["below"]:
-        return [f"simulation {told['above']} on either side"]
-    return [f"simulation {what} just {name} it" for name, what in told.items()]
+            outcomes[name] = f"settles on {found.spelling or 'a motion without events'} elsewhere"
+    if outcomes["above"] == outcomes["below"]:
+        return [f"simulation {outcomes['above']} on either side"]
+    return [f"simulation {outcome} just {name} it" for name, outcome in outcomes.items()]
 
 
 def piled_up(orbit: Orbit, approaches: np.ndarray) -> bool:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orbits.borders.rewriting import Edit, durations_after, edits_at, rewritten
-from orbits.contacts import HIT, SLIP, STICK, Change, Grows, What
+from orbits.contacts import HIT, SLIP, STICK, Change, Grows, WordChange
 from orbits.flows.equations import newton
 from orbits.orbit import REAL, SHRINKS, Orbit, examined, gap, tends
 from orbits.protocol import CycleProblem
@@ -49,7 +49,7 @@ class Border:
 
     def __init__(self, problem: CycleProblem, u: np.ndarray, p: float, margin: int) -> None:
         self.problem, self.u, self.p, self.margin = problem, u, p, margin
-        self._begun: dict[int, Begun | None] = {}
+        self._rewritten: dict[int, RewrittenOrbit | None] = {}
 
     @cached_property
     def orbit(self) -> Orbit:
@@ -66,11 +66,11 @@ class Border:
         """Index of the margin's event."""
         return self.margin // len(self.problem.word.alphabet.columns)
 
-    def begun(self, edit: Edit) -> Begun | None:
-        """The rewritten word of a single edit (see `begun`), computed once."""
-        if id(edit) not in self._begun:
-            self._begun[id(edit)] = begun(self.problem, self.orbit, self.p, [edit])
-        return self._begun[id(edit)]
+    def rewrite(self, edit: Edit) -> RewrittenOrbit | None:
+        """The rewritten word of a single edit (see `rewrite`), computed once."""
+        if id(edit) not in self._rewritten:
+            self._rewritten[id(edit)] = rewrite(self.problem, self.orbit, self.p, [edit])
+        return self._rewritten[id(edit)]
 
     def read_from(self, first: int) -> Border:
         """The same border, rotated to event `first`."""
@@ -99,7 +99,7 @@ def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Border
     return border.read_from(place - 1 if slip else place)
 
 
-class Grown(NamedTuple):
+class BranchAtBorder(NamedTuple):
     """A solution next to the border, on a branch that begins there; `tangent` (None if unknown) points away from the border."""
 
     problem: CycleProblem
@@ -112,24 +112,24 @@ class Grown(NamedTuple):
         return self.problem.orbit(self.u, self.p)
 
 
-def proposals(border: Border) -> Iterator[tuple[Grown, str]]:
+def proposals(border: Border) -> Iterator[tuple[BranchAtBorder, str]]:
     """Yield solutions next to the border with the words that the local rules propose, and a description of each change."""
     problem, orbit, p = border.problem, border.orbit, border.p
     values = margins_of(problem, border.u, p)
-    together = [
+    vanishing = [
         j for j in range(problem.n_margins) if j != border.margin and abs(values[j]) < BORDERING.together
     ]
     for first in border.edits:
         chosen = [first]
-        for j in together:
+        for j in vanishing:
             for edit in edits_at(orbit, j, problem.length):
-                alike = edit.change.what is first.change.what
-                if alike and not any(_overlap(edit.change, other.change) for other in chosen):
+                same_change = edit.change.what is first.change.what
+                if same_change and not any(_overlap(edit.change, other.change) for other in chosen):
                     chosen.append(edit)
                     break
-        if len(chosen) > 1 and (found := grown(begun(problem, orbit, p, chosen))) is not None:
+        if len(chosen) > 1 and (found := branch_at_border(rewrite(problem, orbit, p, chosen))) is not None:
             yield found, first.change.what.value
-        if (found := grown(border.begun(first))) is not None:
+        if (found := branch_at_border(border.rewrite(first))) is not None:
             yield found, first.change.what.value
 
 
@@ -142,7 +142,7 @@ def _overlap(a: Change, b: Change) -> bool:
     return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
 
 
-class Held(NamedTuple):
+class SizedSolution(NamedTuple):
     """A solution in which the growing quantity (duration or speed of the new event) has a given size."""
 
     u: np.ndarray
@@ -151,7 +151,7 @@ class Held(NamedTuple):
     size: float
 
 
-class Growing(NamedTuple):
+class GrowingQuantity(NamedTuple):
     """A quantity that grows from zero beyond a border at `p`: problem of the rewritten word, index of its new event, and the change of the word."""
 
     problem: CycleProblem
@@ -159,9 +159,9 @@ class Growing(NamedTuple):
     change: Change
     p: float
 
-    def climb(self, guess: np.ndarray, sizes: tuple[float, ...]) -> list[Held]:
+    def climb(self, guess: np.ndarray, sizes: tuple[float, ...]) -> list[SizedSolution]:
         """Solve with the quantity held at each of the sizes in turn, until Newton's method fails."""
-        found: list[Held] = []
+        found: list[SizedSolution] = []
         u, q = guess, self.p
         for wanted in sizes:
             held = self.hold(u, q, wanted)
@@ -171,71 +171,71 @@ class Growing(NamedTuple):
             u, q = held.u, held.p
         return found
 
-    def outwards(self, found: list[Held]) -> Iterator[Held]:
+    def outwards(self, found: list[SizedSolution]) -> Iterator[SizedSolution]:
         """Yield the solutions found from small to large sizes, then solutions of still larger sizes."""
         yield from found[-2::-1]
-        held: Held | None = found[0]
+        held: SizedSolution | None = found[0]
         while held is not None and held.size < GROWING.first:
             held = self.hold(held.u, held.p, min(10.0 * held.size, GROWING.first))
             if held is not None:
                 yield held
 
-    def hold(self, guess: np.ndarray, q: float, wanted: float) -> Held | None:
+    def hold(self, guess: np.ndarray, q: float, wanted: float) -> SizedSolution | None:
         """Solve with the quantity held at a size; None if there is no such solution near the border."""
         other, first, change, p = self
         size = other.dimension
         n = size // other.length
         border = np.zeros(size + 1)
-        u, here, following = guess.copy(), first * n, (first + 1) * n % size
+        u, place, following = guess.copy(), first * n, (first + 1) * n % size
         if change.grows is Grows.GAP and not other.forced:
-            border[here], u[here] = 1.0, wanted
+            border[place], u[place] = 1.0, wanted
         elif change.grows is Grows.GAP:
-            border[here], border[following] = -1.0, 1.0
-            if change.what is What.CROSSINGS_APPEAR:
-                u[here] = 0.5 * (u[here] + u[following] - wanted)
-                u[following] = u[here] + wanted
+            border[place], border[following] = -1.0, 1.0
+            if change.what is WordChange.CROSSINGS_APPEAR:
+                u[place] = 0.5 * (u[place] + u[following] - wanted)
+                u[following] = u[place] + wanted
             elif change.start == change.stop:  # the later event, at which friction gives way, stays
-                u[here] = u[following] - wanted
+                u[place] = u[following] - wanted
             else:
-                u[following] = u[here] + wanted
+                u[following] = u[place] + wanted
         else:
             near = BORDERING.together * parameter_unit(other, p)
             speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
-            border[here : here + n], border[size] = slopes, by_parameter
-            u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
+            border[place : place + n], border[size] = slopes, by_parameter
+            u[place : place + n] += push * (wanted - speed) / float(slopes @ push)
             if (
                 len(change.events) > 1
                 and other.word.letter(first + 1).kind == STICK
                 and abs(speed) > BORDERING.together
             ):  # the time until it comes to rest is proportional to its speed
-                clock = here if not other.forced else following
-                since = u[following] - u[here] if other.forced else u[here]
-                u[clock] += since * (wanted / speed - 1.0)
+                clock = place if not other.forced else following
+                duration = u[following] - u[place] if other.forced else u[place]
+                u[clock] += duration * (wanted / speed - 1.0)
         u, q, residual, tangent = newton(other.equations, u, q, border)
         if not residual < SOLVING.residual:
             return None
-        return Held(u, q, tangent, wanted)
+        return SizedSolution(u, q, tangent, wanted)
 
 
-class Begun:
+class RewrittenOrbit:
     """The rewritten word of a border orbit, and its solutions next to the border, each computed once.
 
     Attributes
     ----------
     orbit : Orbit
         The border orbit.
-    stated : Growing
+    stated : GrowingQuantity
         The growing quantity according to the edits.
     guess : float array (N,)
         Unknowns of the new orbit at the border.
     """
 
-    def __init__(self, orbit: Orbit, stated: Growing, guess: np.ndarray) -> None:
+    def __init__(self, orbit: Orbit, stated: GrowingQuantity, guess: np.ndarray) -> None:
         self.orbit, self.stated, self.guess = orbit, stated, guess
-        self._climbed: dict[tuple[float, ...], list[Held]] = {}
+        self._climbed: dict[tuple[float, ...], list[SizedSolution]] = {}
 
     @cached_property
-    def growing(self) -> Growing | None:
+    def growing(self) -> GrowingQuantity | None:
         """The quantity that grows from zero; None if the equations of the new word are regular at the border.
 
         If the edits name no growing quantity, another round of the cycle may still contain an impact of vanishing speed or a stick of
@@ -263,20 +263,20 @@ class Begun:
             else:
                 continue
             events = other.word.events[place : place + 2]
-            return Growing(
+            return GrowingQuantity(
                 other, place, replace(change, start=place, stop=place, events=events, grows=grows), p
             )
         return None
 
-    def climbed(self, sizes: tuple[float, ...]) -> list[Held]:
-        """Solutions in which the growing quantity has these sizes; see `Growing.climb`."""
+    def climbed(self, sizes: tuple[float, ...]) -> list[SizedSolution]:
+        """Solutions in which the growing quantity has these sizes; see `GrowingQuantity.climb`."""
         if sizes not in self._climbed:
             assert self.growing is not None
             self._climbed[sizes] = self.growing.climb(self.guess, sizes)
         return self._climbed[sizes]
 
 
-def begun(problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> Begun | None:
+def rewrite(problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> RewrittenOrbit | None:
     """Rewrite the word of a border orbit by edits; None if no word is possible."""
     half, halved = problem.length, problem.symmetric
     if halved and len(problem.word):  # edit the half, and mirror it
@@ -288,48 +288,50 @@ def begun(problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> B
     if halved:
         word = word.with_image()
     if not len(word):
-        alone = orbit.flow.without_events(orbit)
-        if alone is None:
+        event_free = orbit.flow.without_events(orbit)
+        if event_free is None:
             return None
-        nodes, halved = alone, halved and word.mirror_symmetric_halves
+        nodes, halved = event_free, halved and word.mirror_symmetric_halves
     elif not problem.forced:
         nodes = durations_after(orbit.durations, nodes, edits[0])
     try:
         other = problem.sibling(word, problem.periods, halved)
     except ValueError:
         return None
-    return Begun(orbit, Growing(other, first, edits[0].change, p), other.reduce(nodes))
+    return RewrittenOrbit(orbit, GrowingQuantity(other, first, edits[0].change, p), other.reduce(nodes))
 
 
-def grown(
-    begun: Begun | None, ways: tuple[tuple[float, ...], ...] = BORDERING.sizes, steady: bool = False
-) -> Grown | None:
+def branch_at_border(
+    rewriting: RewrittenOrbit | None,
+    trials: tuple[tuple[float, ...], ...] = BORDERING.sizes,
+    steady: bool = False,
+) -> BranchAtBorder | None:
     """Solve for an orbit of the new word next to the border, with the growing quantity at the smallest size for which Newton's method converges.
 
     None if no solution is real and tends to the border orbit or, with `steady`, if that solution is unstable.
     """
-    if begun is None:
+    if rewriting is None:
         return None
-    (other, _, change, p), orbit = begun.stated, begun.orbit
+    (other, _, change, p), orbit = rewriting.stated, rewriting.orbit
     if change.grows is Grows.MARGIN:
-        found = _beside(other, begun.guess, p, orbit, steady)
-        if found is not None or begun.growing is None:
+        found = _solved_both_sides(other, rewriting.guess, p, orbit, steady)
+        if found is not None or rewriting.growing is None:
             return found
-    assert begun.growing is not None
-    for sizes in ways:
-        found = begun.climbed(sizes)
+    assert rewriting.growing is not None
+    for sizes in trials:
+        found = rewriting.climbed(sizes)
         if (
             found and steady
         ):  # at a graze multipliers are unbounded: an orbit may be stable only from a period doubling close to it on
             found = [held for held in found if stable_at(other, held.u, held.p)]
             if not found:
                 return None
-        if found and _begins_at(orbit, begun.growing, found):
-            return Grown(other, *found[-1][:3])
+        if found and _begins_at(orbit, rewriting.growing, found):
+            return BranchAtBorder(other, *found[-1][:3])
     return None
 
 
-def _begins_at(border: Orbit, growing: Growing, found: list[Held]) -> bool:
+def _begins_at(border: Orbit, growing: GrowingQuantity, found: list[SizedSolution]) -> bool:
     """Whether the solutions, from large to small sizes, are real and tend to the border orbit.
 
     Margins that vanish at the border are too small for a sign next to it; solutions further away decide.
@@ -350,16 +352,16 @@ def _begins_at(border: Orbit, growing: Growing, found: list[Held]) -> bool:
     if size < GROWING.first and np.any(undecided & (values < REAL)):
         return False  # no solution at a size where their sign is certain
     further = second or near
-    apart = gap(border, other.orbit(near.u, near.p))
-    if not tends(apart, lambda: gap(border, other.orbit(further.u, further.p))):
+    distance = gap(border, other.orbit(near.u, near.p))
+    if not tends(distance, lambda: gap(border, other.orbit(further.u, further.p))):
         return False
-    return _keeps_tending(border, growing, near, apart)
+    return _keeps_tending(border, growing, near, distance)
 
 
-def _keeps_tending(border: Orbit, growing: Growing, near: Held, apart: float) -> bool:
+def _keeps_tending(border: Orbit, growing: GrowingQuantity, near: SizedSolution, distance: float) -> bool:
     """Whether solutions of still smaller sizes, as far as Newton's method converges, go on tending to the border orbit and its parameter value.
 
-    Solutions of a branch that only passes nearby stop doing so. `apart` is the distance of the solution `near` from the border orbit.
+    Solutions of a branch that only passes nearby stop doing so. `distance` is the distance of the solution `near` from the border orbit.
     """
     other, p = growing.problem, growing.p
     placed = BORDERING.placed * parameter_unit(other, p)
@@ -368,15 +370,17 @@ def _keeps_tending(border: Orbit, growing: Growing, near: Held, apart: float) ->
         if held is None:
             break
         closer = gap(border, other.orbit(held.u, held.p))
-        if not tends(closer, lambda apart=apart: apart):
+        if not tends(closer, lambda distance=distance: distance):
             return False
         if abs(held.p - p) > max(SHRINKS * abs(near.p - p), placed):
             return False
-        near, apart = held, closer
+        near, distance = held, closer
     return True
 
 
-def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, steady: bool) -> Grown | None:
+def _solved_both_sides(
+    other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, steady: bool
+) -> BranchAtBorder | None:
     """Solve for a regular word at fixed parameter values on both sides of the border, and return the solution that is real."""
     unit = parameter_unit(other, p)
     at_border, _, residual, tangent = newton(other.equations, guess, p)
@@ -384,7 +388,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
         return None
     # if the branch has a fold, or its period is halved, close by, solutions at a fixed value may belong to another branch
     steep = np.abs(tangent).max() * unit > BORDERING.steep
-    found = _along(other, at_border, p, tangent) if steep else None
+    found = _solved_along(other, at_border, p, tangent) if steep else None
     for away in BORDERING.regular if found is None else ():
         sides = []
         for side in (1.0, -1.0):
@@ -399,15 +403,17 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
             if (
                 margin > BORDERING.growing * away
             ):  # the margin grows; it does not vanish along the whole branch, as at a wall touched without speed
-                found = Grown(other, u, q, along)
+                found = BranchAtBorder(other, u, q, along)
                 break
     if found is None or (steady and not stable_at(other, found.u, found.p)):
         return None
-    apart = gap(orbit, other.orbit(at_border, p))
-    return found if tends(apart, lambda: gap(orbit, found.orbit())) else None
+    distance = gap(orbit, other.orbit(at_border, p))
+    return found if tends(distance, lambda: gap(orbit, found.orbit())) else None
 
 
-def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
+def _solved_along(
+    other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray
+) -> BranchAtBorder | None:
     """The same if the new branch turns back close to the border: solve in both directions of its tangent."""
     length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
     for away in BORDERING.turning:
@@ -416,5 +422,5 @@ def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.nda
             ahead = at_border + away * direction[:-1]
             u, q, residual, _ = newton(other.equations, ahead, p + away * direction[-1], direction)
             if residual < SOLVING.residual and margins_of(other, u, q).min() > BORDERING.growing * away:
-                return Grown(other, u, q, direction)
+                return BranchAtBorder(other, u, q, direction)
     return None

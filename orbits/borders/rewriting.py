@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.contacts import HIT, STICK, SWITCH, Change, Grows, Site, Spot, What
+from orbits.contacts import HIT, STICK, SWITCH, Change, Grows, Site, Spot, WordChange
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING
@@ -74,12 +74,12 @@ def durations_after(durations: np.ndarray, nodes: np.ndarray, edit: Edit) -> np.
         nodes[change.start : change.start + m, 0] = np.diff(inside)
         return nodes
     # the time from the event before `start` to that at `stop` stays the same
-    alone = len(nodes) == m  # no event of the old word remains: the last flight leads to the first new event
+    fresh = len(nodes) == m  # no event of the old word remains: the last flight leads to the first new event
     passed = np.cumsum(np.roll(durations, 1 - change.start)[: change.stop - change.start + 1])
     instants = [_instant(spot, change.start, passed) for spot in change.spots]
-    whole = [*instants, instants[0] + durations.sum()] if alone else [0.0, *instants, passed[-1]]
+    whole = [*instants, instants[0] + durations.sum()] if fresh else [0.0, *instants, passed[-1]]
     spans = np.maximum(np.diff(whole), BORDERING.least_flight)
-    nodes[(np.arange(len(spans)) + change.start - (0 if alone else 1)) % len(nodes), 0] = spans
+    nodes[(np.arange(len(spans)) + change.start - (0 if fresh else 1)) % len(nodes), 0] = spans
     return nodes
 
 
@@ -107,37 +107,37 @@ def changes_at(site: Site, watched: int) -> list[Change]:
         return contacts[watched].met(site, watched)
     if not len(word):
         return []
-    here = word.letter(site.place)
+    event = word.letter(site.place)
     if watched == Watch.STRENGTH:
-        return contacts[here.contact].weakened(site, here.contact)
+        return contacts[event.contact].weakened(site, event.contact)
     if site.place + 1 >= len(word):
         return []
-    there = word.letter(site.place + 1)
-    if here.contact == there.contact:
-        return contacts[here.contact].collapsed(site, here.contact)
+    next_event = word.letter(site.place + 1)
+    if event.contact == next_event.contact:
+        return contacts[event.contact].collapsed(site, event.contact)
     alphabet = word.alphabet
-    for one, other in ((here, there), (there, here)):
+    for one, other in ((event, next_event), (next_event, event)):
         if (one.contact, other.contact) in alphabet.rides:
             return contacts[one.contact].collapsed(site, one.contact)
-    if alphabet.touches(here, there.contact) or alphabet.touches(there, here.contact):
-        if SWITCH in (here.kind, there.kind):
-            switch = (here if here.kind == SWITCH else there).contact
+    if alphabet.touches(event, next_event.contact) or alphabet.touches(next_event, event.contact):
+        if SWITCH in (event.kind, next_event.kind):
+            switch = (event if event.kind == SWITCH else next_event).contact
             return contacts[switch].collapsed(site, switch)
-        alone = here.kind == HIT and there.kind != STICK
-        return [] if alone else contacts[here.contact].weakened(site, here.contact)
+        impact_only = event.kind == HIT and next_event.kind != STICK
+        return [] if impact_only else contacts[event.contact].weakened(site, event.contact)
     return [_swapped(site)]
 
 
 def _swapped(site: Site) -> Change:
     """Exchange two consecutive events of independent contacts."""
     word, place = site.word, site.place
-    here, there = word.events[place], word.events[place + 1]
+    first, second = word.events[place], word.events[place + 1]
     between = word.mode(place - 1)
     for j in range(len(word.alphabet.contacts)):
         if site.entry(place + 1, j) != site.entry(place, j):
             between = word.alphabet.with_entry(between, j, site.entry(place + 1, j))
     modes, spots = (between, word.mode(place + 1)), (Spot(place), Spot(place + 1))
-    return Change(place, place + 2, (there, here), modes, spots, Grows.MARGIN, What.ORDER_CHANGES)
+    return Change(place, place + 2, (second, first), modes, spots, Grows.MARGIN, WordChange.ORDER_CHANGES)
 
 
 class Edit(NamedTuple):

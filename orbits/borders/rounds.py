@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.neighbours import Border, begun, followed, grown, parameter_unit
+from orbits.borders.neighbours import Border, branch_at_border, followed, parameter_unit, rewrite
 from orbits.borders.rewriting import Edit, edits_at
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
@@ -36,39 +36,39 @@ UNSTABLE = 1.5  # largest multiplier of a product computed next to the border, a
 BOUNDED = 0.05  # largest relative change of the derivatives, from one size of the growing quantity to the next, if they have a limit
 
 
-def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
+def escapes(border: Border, neighbours: list[Border]) -> Iterator[Seed]:
     """Find orbits of less symmetry or longer period that leave at a border.
 
     A change in every other round breaks the symmetry or doubles the period; these orbits are yielded whether they are stable or not. Changes in one of
-    several rounds, or in all but one (period adding), may give many orbits; of these only stable ones are yielded. `beside` are solutions
+    several rounds, or in all but one (period adding), may give many orbits; of these only stable ones are yielded. `neighbours` are solutions
     with the old word next to the border, from far to near.
     """
     problem, p, orbit, edits = border.problem, border.p, border.orbit, border.edits
-    unchanged = [_derivative(near.problem, near.u, near.p) for near in beside[-2:]]
-    known = [_rounds_at(border, edit, unchanged) for edit in edits]
-    hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
-    if hopeless and all(len(no) == len(choices(MOST)) for no in hopeless):
+    unchanged = [_derivative(near.problem, near.u, near.p) for near in neighbours[-2:]]
+    by_edit = [_rounds_at(border, edit, unchanged) for edit in edits]
+    hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in by_edit]
+    if hopeless and all(len(excluded) == len(choices(MOST)) for excluded in hopeless):
         return
     first = edits_at(_repeated(problem, orbit, 2)[1], border.margin, problem.length)
     if [edit.change for edit in first] != [edit.change for edit in edits]:
         hopeless = [set() for _ in first]
     for rounds, changed in choices(MOST):  # the first `changed` rounds have the new word
-        wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
+        wanted = [edit for edit, excluded in zip(first, hopeless) if (rounds, changed) not in excluded]
         if not wanted or (changed > 1 and not problem.forced):
             continue
         wider, whole = _repeated(problem, orbit, rounds)
-        ways = BORDERING.sizes if rounds == 2 else BORDERING.sizes[:2]
+        trials = BORDERING.sizes if rounds == 2 else BORDERING.sizes[:2]
         for edit in wanted:
             changes = [edit.later(k, problem, p) for k in range(changed)]
-            found = grown(begun(wider, whole, p, changes), ways, steady=rounds > 2)
+            found = branch_at_border(rewrite(wider, whole, p, changes), trials, steady=rounds > 2)
             if found is not None:
                 break
         else:
             continue
-        other, there = found.problem, found.orbit()
-        root = there.root()
+        other, new_orbit = found.problem, found.orbit()
+        root = new_orbit.root()
         shorter = (len(root.word), root.periods) != (len(other.word), other.periods)
-        if not shorter and (other.symmetric or not there.symmetric) and followed(there):
+        if not shorter and (other.symmetric or not new_orbit.symmetric) and followed(new_orbit):
             note = f"{edit.change.what.value}: {escape(problem.symmetric, rounds)}"
             yield Seed(*found, "border", note, False)
 
@@ -87,7 +87,7 @@ def _rounds_at(border: Border, edit: Edit, unchanged: list[tuple[np.ndarray, flo
 
     They come from solutions with the new word at or next to the border, real or virtual, which must tend to the border.
     """
-    new = border.begun(edit)
+    new = border.rewrite(edit)
     if new is None:
         return None
     other, solutions = new.stated.problem, [(new.guess, border.p)]
@@ -141,11 +141,11 @@ def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.
     firsts = np.arange(rounds.max(initial=1))[None, :]  # all points of all cycles at once
     P = np.broadcast_to(np.eye(maps.shape[1]), (len(keys), firsts.size, *maps.shape[1:]))
     M = maps[(changed[:, 0] > 0).astype(int)]
-    for later in range(1, firsts.size):
-        here = maps[((firsts + later) % rounds < changed).astype(int)]
-        goes_on = (later < rounds)[:, :, None, None]
-        P = np.where(goes_on, np.eye(maps.shape[1]) + here @ P, P)
-        M = np.where(goes_on[:, 0], here[:, 0] @ M, M)
+    for shift in range(1, firsts.size):
+        factors = maps[((firsts + shift) % rounds < changed).astype(int)]
+        goes_on = (shift < rounds)[:, :, None, None]
+        P = np.where(goes_on, np.eye(maps.shape[1]) + factors @ P, P)
+        M = np.where(goes_on[:, 0], factors[:, 0] @ M, M)
     found = np.where(firsts < changed, 1.0, -1.0) * np.linalg.det(P)
     exists = firsts < rounds
     low = np.where(exists, found, np.inf).min(axis=1)
@@ -180,22 +180,22 @@ class Rounds(NamedTuple):
         """
         keys = choices(most)
         sides, products = sides_of_cycles(self.maps, np.array(keys))
-        beside = sides if self.further is None else sides_of_cycles(self.further, np.array(keys))[0]
+        farther = sides if self.further is None else sides_of_cycles(self.further, np.array(keys))[0]
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
         finite = np.isfinite(products).all(axis=(1, 2))
         largest = np.full(len(keys), np.nan)  # moduli of multipliers
         largest[finite] = np.abs(np.linalg.eigvals(products[finite])).max(axis=1)
         hopeless = set()
         for key, (low, high), before, product, size in zip(
-            keys, sides.tolist(), beside.tolist(), products, largest.tolist()
+            keys, sides.tolist(), farther.tolist(), products, largest.tolist()
         ):
             if self.linear:
-                torn = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
+                virtual = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
             elif self.further is not None and _lasts(-low, -before[0]) and _lasts(high, before[1]):
-                torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < ROUNDING.sure
+                virtual = key[0] * self.error * max(float(np.abs(product).max()), own * other) < ROUNDING.sure
             else:
-                torn = False
-            if torn or (key[0] > 2 and size > UNSTABLE + self._rounding(*key, own, other)):
+                virtual = False
+            if virtual or (key[0] > 2 and size > UNSTABLE + self._rounding(*key, own, other)):
                 hopeless.add(key)
         return hopeless
 

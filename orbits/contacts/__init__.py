@@ -68,7 +68,7 @@ Mode = int | tuple[int, ...]
 `orbits.words.alphabet`."""
 
 
-class What(Enum):
+class WordChange(Enum):
     """Changes of a word; the value is the text."""
 
     STICK_APPEARS = "a stick appears inside a flight"
@@ -139,7 +139,7 @@ class Change:
     spots : tuple of Spot
         Position of each new event.
     grows : Grows
-    what : What
+    what : WordChange
     """
 
     start: int
@@ -148,7 +148,7 @@ class Change:
     modes: tuple[Mode, ...]
     spots: tuple[Spot, ...]
     grows: Grows
-    what: What
+    what: WordChange
 
 
 class Site(NamedTuple):

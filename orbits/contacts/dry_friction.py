@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from contvines.shared.near_names import hinted
-from orbits.contacts import HIT, SLIP, STICK, TURN, Change, Grows, Letter, Site, Spot, What
+from orbits.contacts import HIT, SLIP, STICK, TURN, Change, Grows, Letter, Site, Spot, WordChange
 from orbits.settings import GROWING
 
 SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is zero
 
 
-class Beat(NamedTuple):
+class Event(NamedTuple):
     """An event that affects a friction: its own, or an impact that changes its velocity.
 
     `sign` is the sign of the velocity after the event, if the event determines it; before an impact with a sign the velocity has the opposite one.
@@ -24,11 +24,11 @@ class Beat(NamedTuple):
 
 
 class CannotFollow(ValueError):
-    """Among the events that affect a friction, event `beat` is impossible after the mode `came`."""
+    """Among the events that affect a friction, event `event` is impossible after the mode `before`."""
 
-    def __init__(self, beat: int, came: int | None) -> None:
-        super().__init__(beat, came)
-        self.beat, self.came = beat, came
+    def __init__(self, event: int, before: int | None) -> None:
+        super().__init__(event, before)
+        self.event, self.before = event, before
 
 
 class FrictionLaw:
@@ -59,12 +59,12 @@ class FrictionLaw:
         """Return the name of its margin inside a flight: time or reserve of a stick, else the relative speed."""
         return "hold" if mode == STUCK else "flight"
 
-    def together(self, here: int, there: int) -> str:
+    def together(self, first: int, second: int) -> str:
         """Return the kind of border at which two consecutive events of this friction, of these kinds, coincide."""
-        return "velocity-graze" if here == there == TURN else "stick"
+        return "velocity-graze" if first == second == TURN else "stick"
 
     # ------------------------------------------------------------------ modes of a word
-    def directions(self, beats: Sequence[Beat], noted: Mapping[int, int] | None = None) -> list[int]:
+    def directions(self, beats: Sequence[Event], noted: Mapping[int, int] | None = None) -> list[int]:
         """Return the mode after each event that affects this friction, in a cyclic word; linear time.
 
         Where the events do not determine the direction, a slip reverses the motion that its stick ended, and a word of turns alone
@@ -72,7 +72,7 @@ class FrictionLaw:
 
         Parameters
         ----------
-        beats : sequence of Beat
+        beats : sequence of Event
         noted : mapping, optional
             Event -> mode after it, for events with a written mode.
 
@@ -86,13 +86,13 @@ class FrictionLaw:
         for i, mode in (noted or {}).items():
             after[i] = mode if after[i] is None else after[i]
         for i, b in enumerate(beats):
-            here, came = after[i], after[i - 1]
-            if b.kind == TURN and here is None and came is not None:
-                after[i] = -came
-            elif b.kind == SLIP and came is None:
+            own, before = after[i], after[i - 1]
+            if b.kind == TURN and own is None and before is not None:
+                after[i] = -before
+            elif b.kind == SLIP and before is None:
                 after[i - 1] = STUCK
-            elif came is None and here is not None and (b.kind == TURN or (b.kind == HIT and b.sign)):
-                after[i - 1] = -here
+            elif before is None and own is not None and (b.kind == TURN or (b.kind == HIT and b.sign)):
+                after[i - 1] = -own
         _settle(beats, after, [i for i in range(n) if after[i] is not None])
         for i, b in enumerate(beats):
             if b.kind == SLIP and after[i] is None:
@@ -108,19 +108,19 @@ class FrictionLaw:
         return [int(mode) for mode in after]  # type: ignore[arg-type]
 
     @staticmethod
-    def _refuse(beats: Sequence[Beat], after: Sequence[int | None]) -> None:
+    def _refuse(beats: Sequence[Event], after: Sequence[int | None]) -> None:
         """Raise `CannotFollow` for the first impossible event."""
         for i in [*range(1, len(beats)), 0][: len(beats)]:
-            b, came, mode = beats[i], after[i - 1], after[i]
-            sliding = came in (SLIDE_BACK, SLIDE_ON)
+            b, before, mode = beats[i], after[i - 1], after[i]
+            sliding = before in (SLIDE_BACK, SLIDE_ON)
             possible = {
-                TURN: sliding and mode == -(came or 0),
+                TURN: sliding and mode == -(before or 0),
                 STICK: sliding,
-                SLIP: came == STUCK and mode in (SLIDE_BACK, SLIDE_ON),
-                HIT: b.sign is None or (mode == b.sign and came == -b.sign),
+                SLIP: before == STUCK and mode in (SLIDE_BACK, SLIDE_ON),
+                HIT: b.sign is None or (mode == b.sign and before == -b.sign),
             }
             if not possible[b.kind]:
-                raise CannotFollow(i, came)
+                raise CannotFollow(i, before)
 
     # ------------------------------------------------------------------ how the word changes
     def met(self, site: Site, j: int) -> list[Change]:
@@ -131,7 +131,7 @@ class FrictionLaw:
         if site.entry(place, j) == STUCK:
             events = (text_of(j, SLIP), text_of(j, STICK))
             modes = (word.alphabet.with_entry(mode, j, site.sign), mode)
-            what = What.SLIP_APPEARS
+            change = WordChange.SLIP_APPEARS
         else:
             following = (place + 1) % site.unit if len(word) else -1
             if (
@@ -142,8 +142,8 @@ class FrictionLaw:
                 return self._stick(site, following, j)  # the velocity vanishes next to a very short stick
             events = (text_of(j, STICK), text_of(j, SLIP))
             modes = (word.alphabet.with_entry(mode, j, STUCK), mode)
-            what = What.STICK_APPEARS
-        return [Change(start, start, events, modes, (Spot(None, later=-1.0), Spot(None)), Grows.GAP, what)]
+            change = WordChange.STICK_APPEARS
+        return [Change(start, start, events, modes, (Spot(None, later=-1.0), Spot(None)), Grows.GAP, change)]
 
     def weakened(self, site: Site, j: int) -> list[Change]:
         """Return the changes if the margin (strength) of one of its events vanishes."""
@@ -158,14 +158,14 @@ class FrictionLaw:
     def collapsed(self, site: Site, j: int) -> list[Change]:
         """Return the changes if two consecutive events of this friction coincide."""
         place = site.place
-        here, there = site.word.letter(place).kind, site.word.letter(place + 1).kind
-        if here == STICK:
+        first, second = site.word.letter(place).kind, site.word.letter(place + 1).kind
+        if first == STICK:
             return self._stick(site, place, j)
-        if here == TURN and there == STICK:
+        if first == TURN and second == STICK:
             return self._turn(site, place, j)
-        if {here, there} in ({TURN}, {SLIP, STICK}):
-            what = What.TURNS_VANISH if here == TURN else What.SLIP_VANISHES
-            return [Change(place, place + 2, (), (), (), Grows.MARGIN, what)]
+        if {first, second} in ({TURN}, {SLIP, STICK}):
+            change = WordChange.TURNS_VANISH if first == TURN else WordChange.SLIP_VANISHES
+            return [Change(place, place + 2, (), (), (), Grows.MARGIN, change)]
         return []
 
     def _turn(self, site: Site, place: int, j: int) -> list[Change]:
@@ -175,11 +175,13 @@ class FrictionLaw:
         if site.is_event(place + 1, j, STICK):
             events, modes = (text_of(j, STICK),), (word.mode(place + 1),)
             spots = (Spot(place + 1),)
-            found.append(Change(place, place + 2, events, modes, spots, Grows.MARGIN, What.TURN_DISAPPEARS))
+            found.append(
+                Change(place, place + 2, events, modes, spots, Grows.MARGIN, WordChange.TURN_DISAPPEARS)
+            )
         events = (text_of(j, STICK), text_of(j, SLIP))
         modes = (site.mode(place, j, STUCK), word.mode(place))
         spots = (Spot(place), Spot(place, later=1.0))
-        found.append(Change(place, place + 1, events, modes, spots, Grows.GAP, What.TURN_BECOMES_STICK))
+        found.append(Change(place, place + 1, events, modes, spots, Grows.GAP, WordChange.TURN_BECOMES_STICK))
         return found
 
     def _stick(self, site: Site, place: int, j: int) -> list[Change]:
@@ -189,41 +191,45 @@ class FrictionLaw:
         before, gap = site.entry(place - 1, j), site.lengths[place - 1]
         if site.is_event(place - 1, j, TURN) and gap < GROWING.short:
             held, spots = (word.mode(place),), (Spot(place),)
-            return [Change(place - 1, place + 1, (stick,), held, spots, Grows.MARGIN, What.TURN_DISAPPEARS)]
+            return [
+                Change(place - 1, place + 1, (stick,), held, spots, Grows.MARGIN, WordChange.TURN_DISAPPEARS)
+            ]
         if site.is_event(place - 1, j, SLIP) and gap < GROWING.close:
-            other = Change(place - 1, place + 1, (), (), (), Grows.MARGIN, What.SLIP_VANISHES)
+            other = Change(place - 1, place + 1, (), (), (), Grows.MARGIN, WordChange.SLIP_VANISHES)
         else:
             modes = (site.mode(place - 1, j, -before), word.mode(place))
             spots = (Spot(place), Spot(place, later=1.0))
-            other = Change(place, place + 1, (turn, stick), modes, spots, Grows.GAP, What.TURN_APPEARS)
+            other = Change(place, place + 1, (turn, stick), modes, spots, Grows.GAP, WordChange.TURN_APPEARS)
         if not site.is_event(place + 1, j, SLIP) or site.lengths[place] >= GROWING.short:
             return [other]  # the stick has a duration: the reserve of friction at its beginning vanishes
         if site.entry(place + 1, j) == before:
-            gone = Change(place, place + 2, (), (), (), Grows.MARGIN, What.STICK_DISAPPEARS)
+            vanished = Change(place, place + 2, (), (), (), Grows.MARGIN, WordChange.STICK_DISAPPEARS)
         else:
             modes, spots = (word.mode(place + 1),), (Spot(place, between=True),)
-            gone = Change(place, place + 2, (turn,), modes, spots, Grows.MARGIN, What.STICK_BECOMES_TURN)
-        return [gone, other]
+            vanished = Change(
+                place, place + 2, (turn,), modes, spots, Grows.MARGIN, WordChange.STICK_BECOMES_TURN
+            )
+        return [vanished, other]
 
 
-def _settle(beats: Sequence[Beat], after: list[int | None], known: list[int]) -> None:
+def _settle(beats: Sequence[Event], after: list[int | None], settled: list[int]) -> None:
     """Extend known modes over turns; then let each slip without a direction reverse the motion that its stick ended."""
     n, slips = len(beats), []
-    while known or slips:
-        if not known:
+    while settled or slips:
+        if not settled:
             slip = slips.pop()
             before = after[slip - 2]
             if after[slip] is None and before is not None:
                 after[slip] = -before
-                known = [slip]
+                settled = [slip]
             continue
-        i = known.pop()
+        i = settled.pop()
         mode, following = after[i], (i + 1) % n
         assert mode is not None
         for neighbour, joined in ((following, following), (i - 1, i)):
             if beats[joined].kind == TURN and after[neighbour] is None:
                 after[neighbour] = -mode
-                known.append(neighbour % n)
+                settled.append(neighbour % n)
         slip = (i + 2) % n
         if mode and beats[following].kind == STICK and beats[slip].kind == SLIP:
             slips.append(slip)

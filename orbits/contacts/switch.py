@@ -13,7 +13,19 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from contvines.shared.near_names import hinted
-from orbits.contacts import SLIP, STICK, SWITCH, TURN, Change, Grows, Letter, NotAlternating, Site, Spot, What
+from orbits.contacts import (
+    SLIP,
+    STICK,
+    SWITCH,
+    TURN,
+    Change,
+    Grows,
+    Letter,
+    NotAlternating,
+    Site,
+    Spot,
+    WordChange,
+)
 from orbits.settings import GROWING
 
 
@@ -61,7 +73,7 @@ class Switch:
         """Return the name of its margin inside a flight."""
         return "switch"
 
-    def together(self, here: int, there: int) -> str:
+    def together(self, first: int, second: int) -> str:
         """Return the kind of border at which two consecutive crossings coincide."""
         return "switch-graze"
 
@@ -121,27 +133,27 @@ class Switch:
         if site.at >= 0 and (j, word.letter(site.at).contact) in word.alphabet.rides:
             return touched(site, j, word.letter(site.at).contact)
         if site.at >= 0 and (word.letter(site.at).contact, j) in word.alphabet.flips:
-            return [self._beside(site, j)]
+            return [self._next_to_impact(site, j)]
         if len(word) and site.lengths[site.place] < GROWING.close:
             return []
         mode, start = word.mode(site.place), site.place + 1 if len(word) else 0
-        here, text_of = site.entry(site.place, j), word.alphabet.text_of
-        events = (text_of(j, SWITCH, -here), text_of(j, SWITCH, here))
-        modes = (word.alphabet.with_entry(mode, j, -here), mode)
+        side, text_of = site.entry(site.place, j), word.alphabet.text_of
+        events = (text_of(j, SWITCH, -side), text_of(j, SWITCH, side))
+        modes = (word.alphabet.with_entry(mode, j, -side), mode)
         spots = (Spot(None, later=-0.5), Spot(None, later=0.5))
-        return [Change(start, start, events, modes, spots, Grows.GAP, What.CROSSINGS_APPEAR)]
+        return [Change(start, start, events, modes, spots, Grows.GAP, WordChange.CROSSINGS_APPEAR)]
 
-    def _beside(self, site: Site, j: int) -> Change:
+    def _next_to_impact(self, site: Site, j: int) -> Change:
         """Return the change if an impact ends or begins at the surface: a crossing appears just after or just before it."""
         word, at = site.word, site.at
-        here, text_of, hit = site.entry(site.place, j), word.alphabet.text_of, word.events[at]
+        side, text_of, hit = site.entry(site.place, j), word.alphabet.text_of, word.events[at]
         if site.ahead:
-            events, modes = (hit, text_of(j, SWITCH, here)), (site.mode(at, j, -here), word.mode(at))
+            events, modes = (hit, text_of(j, SWITCH, side)), (site.mode(at, j, -side), word.mode(at))
             spots = (Spot(at), Spot(at, later=1.0))
         else:
-            events, modes = (text_of(j, SWITCH, -here), hit), (site.mode(at - 1, j, -here), word.mode(at))
+            events, modes = (text_of(j, SWITCH, -side), hit), (site.mode(at - 1, j, -side), word.mode(at))
             spots = (Spot(at, later=-1.0), Spot(at))
-        return Change(at, at + 1, events, modes, spots, Grows.GAP, What.CROSSING_APPEARS)
+        return Change(at, at + 1, events, modes, spots, Grows.GAP, WordChange.CROSSING_APPEARS)
 
     def weakened(self, site: Site, j: int) -> list[Change]:
         """Return the changes if the rate at a crossing vanishes: two coinciding crossings disappear."""
@@ -153,7 +165,7 @@ class Switch:
                 word.letter(first).contact == word.letter(first + 1).contact
                 and site.lengths[first] < GROWING.close
             ):
-                found.append(Change(first, first + 2, (), (), (), Grows.MARGIN, What.CROSSINGS_VANISH))
+                found.append(Change(first, first + 2, (), (), (), Grows.MARGIN, WordChange.CROSSINGS_VANISH))
         return found
 
     def collapsed(self, site: Site, j: int) -> list[Change]:
@@ -163,7 +175,9 @@ class Switch:
             jumped = (word.letter(hit).contact, j) in word.alphabet.flips
             if jumped and place + 1 < len(word) and site.is_event(own, j, SWITCH):
                 events, modes, spots = (word.events[hit],), (word.mode(place + 1),), (Spot(hit),)
-                return [Change(place, place + 2, events, modes, spots, Grows.MARGIN, What.CROSSING_VANISHES)]
+                return [
+                    Change(place, place + 2, events, modes, spots, Grows.MARGIN, WordChange.CROSSING_VANISHES)
+                ]
         return self.weakened(site, j)
 
 
@@ -174,14 +188,14 @@ def touched(site: Site, j: int, k: int) -> list[Change]:
     stop = at + 2 if site.is_event(at + 1, k, SLIP) else at + 1
     if not site.is_event(at, k, TURN, STICK) or (stop == at + 1 and not site.is_event(at, k, TURN)):
         return []
-    here = site.entry(at, j)
+    side = site.entry(at, j)
     if site.entry(stop - 1, k) == site.entry(at - 1, k):
         return []  # the motion continues through the surface: the word has this crossing already
     inner = range(at, stop)
-    events = (text_of(j, SWITCH, -here), *(word.events[i] for i in inner), text_of(j, SWITCH, here))
-    modes = (site.mode(at - 1, j, -here), *(site.mode(i, j, -here) for i in inner), word.mode(stop - 1))
+    events = (text_of(j, SWITCH, -side), *(word.events[i] for i in inner), text_of(j, SWITCH, side))
+    modes = (site.mode(at - 1, j, -side), *(site.mode(i, j, -side) for i in inner), word.mode(stop - 1))
     spots = (Spot(at, later=-1.0), *(Spot(i) for i in inner), Spot(stop - 1, later=1.0))
-    return [Change(at, stop, events, modes, spots, Grows.GAP, What.CROSSINGS_APPEAR)]
+    return [Change(at, stop, events, modes, spots, Grows.GAP, WordChange.CROSSINGS_APPEAR)]
 
 
 def withdrawn(site: Site, j: int) -> list[Change]:
@@ -208,15 +222,15 @@ def _withdrawn(site: Site, j: int, at: int) -> list[Change]:
     if before and after:
         outside = site.entry(at - 2, j)
         modes = tuple(site.mode(i, j, outside) for i in inner)
-        return [Change(at - 1, stop + 1, events, modes, spots, Grows.MARGIN, What.CROSSINGS_VANISH)]
+        return [Change(at - 1, stop + 1, events, modes, spots, Grows.MARGIN, WordChange.CROSSINGS_VANISH)]
     if stop == at + 1 or before == after:
         return []
     if before:  # beyond the border the friction sticks before the surface is reached
         outside = site.entry(at - 2, j)
         modes = (*(site.mode(i, j, outside) for i in inner), word.mode(stop - 1))
         events, spots = (*events, word.events[at - 1]), (*spots, Spot(stop - 1, later=1.0))
-        return [Change(at - 1, stop, events, modes, spots, Grows.MARGIN, What.ORDER_CHANGES)]
+        return [Change(at - 1, stop, events, modes, spots, Grows.MARGIN, WordChange.ORDER_CHANGES)]
     inside = site.entry(stop, j)
     modes = (site.mode(at - 1, j, inside), *(site.mode(i, j, inside) for i in inner))
     events, spots = (word.events[stop], *events), (Spot(at, later=-1.0), *spots)
-    return [Change(at, stop + 1, events, modes, spots, Grows.MARGIN, What.ORDER_CHANGES)]
+    return [Change(at, stop + 1, events, modes, spots, Grows.MARGIN, WordChange.ORDER_CHANGES)]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from contvines.shared.near_names import hinted
-from orbits.contacts import HIT, STICK, SWITCH, TURN, Change, Grows, Letter, Site, Spot, What
+from orbits.contacts import HIT, STICK, SWITCH, TURN, Change, Grows, Letter, Site, Spot, WordChange
 
 FREE, HELD = 0, 1  # modes
 
@@ -46,7 +46,7 @@ class WallLaw:
         """Return the name of its margin inside a flight: the distance, or the push of a wall that holds."""
         return "push" if mode == HELD else "wall"
 
-    def together(self, here: int, there: int) -> str:
+    def together(self, first: int, second: int) -> str:
         """Return the kind of border at which two consecutive impacts on this wall coincide."""
         return "vanishing-event"
 
@@ -57,7 +57,7 @@ class WallLaw:
             return self._met_at_event(site, j)
         word, start = site.word, site.place + 1 if len(site.word) else 0
         text, mode = word.alphabet.text_of(j, HIT), word.alphabet.after_impact(word.mode(site.place), j)
-        return [Change(start, start, (text,), (mode,), (Spot(None),), Grows.SPEED, What.IMPACT_APPEARS)]
+        return [Change(start, start, (text,), (mode,), (Spot(None),), Grows.SPEED, WordChange.IMPACT_APPEARS)]
 
     def _met_at_event(self, site: Site, j: int) -> list[Change]:
         word, place = site.word, site.at
@@ -69,10 +69,10 @@ class WallLaw:
         after = site.mode(place - 1, letter.contact, sign)
         if letter.kind in (TURN, SWITCH):
             spots = (Spot(place),)
-            return [Change(place, place + 1, (text,), (after,), spots, Grows.SPEED, What.TURN_HITS)]
+            return [Change(place, place + 1, (text,), (after,), spots, Grows.SPEED, WordChange.TURN_HITS)]
         events, modes = (text, letter.text), (after, word.mode(place))
         spots = (Spot(place), Spot(place, later=1.0))
-        return [Change(place, place + 1, events, modes, spots, Grows.SPEED, What.STICK_HITS)]
+        return [Change(place, place + 1, events, modes, spots, Grows.SPEED, WordChange.STICK_HITS)]
 
     def weakened(self, site: Site, j: int) -> list[Change]:
         """Return the changes if the speed of an impact vanishes.
@@ -87,18 +87,22 @@ class WallLaw:
         ]
         turned = [k for k in turned if not word.alphabet.absent(word.mode(place), k)]
         if not turned:
-            return [Change(place, place + 1, (), (), (), Grows.MARGIN, What.IMPACT_VANISHES)]
+            return [Change(place, place + 1, (), (), (), Grows.MARGIN, WordChange.IMPACT_VANISHES)]
         if len(turned) > 1:
             return []
         k, found = turned[0], []
         if site.is_event(place + 1, k, STICK):
             stick, modes = word.events[place + 1], (word.mode(place + 1),)
             spots = (Spot(place, clock=place + 1),)
-            found.append(Change(place, place + 2, (stick,), modes, spots, Grows.MARGIN, What.IMPACT_MERGES))
+            found.append(
+                Change(place, place + 2, (stick,), modes, spots, Grows.MARGIN, WordChange.IMPACT_MERGES)
+            )
         reversal = word.alphabet.contacts[k].reversal
         turn, modes = word.alphabet.text_of(k, reversal, site.entry(place, k)), (word.mode(place),)
         found.append(
-            Change(place, place + 1, (turn,), modes, (Spot(place),), Grows.MARGIN, What.IMPACT_BECOMES_TURN)
+            Change(
+                place, place + 1, (turn,), modes, (Spot(place),), Grows.MARGIN, WordChange.IMPACT_BECOMES_TURN
+            )
         )
         return found
 

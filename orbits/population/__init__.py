@@ -106,9 +106,9 @@ class Population:
             If the walls leave nearly none of the box.
         """
         box, simulator = self.box(p), self._simulator(p)
-        kept: list[np.ndarray] = []
+        accepted: list[np.ndarray] = []
         drawn = 0
-        while sum(map(len, kept)) < count:
+        while sum(map(len, accepted)) < count:
             if drawn > DRAWS * max(count, 2):
                 raise ValueError(
                     f"the walls of {self.model.name!r} leave nearly none of the box of starts at {self.parameter} = {p:g}; "
@@ -116,8 +116,8 @@ class Population:
                 )
             points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn + 1) * (box[:, 1] - box[:, 0])
             drawn += len(points)
-            kept.append(points[simulator.free(points)])
-        return np.concatenate(kept)[:count]
+            accepted.append(points[simulator.free(points)])
+        return np.concatenate(accepted)[:count]
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         """Simulate all starts and identify the attractors they reach.
@@ -155,9 +155,9 @@ class Population:
         from orbits.population.cycles import embedded_cycles
 
         simulator = self._simulator(p, state)
-        begun = simulator.time
+        start_time = simulator.time
         cycles = list(embedded_cycles(simulator, self._embedded))
-        self.work += simulator.time - begun + SOLVED * len(cycles)
+        self.work += simulator.time - start_time + SOLVED * len(cycles)
         return distinct(cycles, self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:

@@ -127,9 +127,9 @@ def fixed_point(
         if not far < np.inf:
             return None
         for j, moved in enumerate(np.where(x > middle, -shift, shift)):  # into the box
-            there = x.copy()
-            there[j] += moved
-            matrix[:, j] = (step(there) - image) / moved
+            trial = x.copy()
+            trial[j] += moved
+            matrix[:, j] = (step(trial) - image) / moved
         try:
             change = np.linalg.solve(matrix - one, rest)
         except np.linalg.LinAlgError:
@@ -138,16 +138,16 @@ def fixed_point(
         if not length < np.inf:
             return None
         change *= min(1.0, LONGEST / max(length, LONGEST))
-        there = x
+        trial = x
         for _ in range(SHORTER):
-            there = x + change
+            trial = x + change
             if hard.any():
-                there = np.where(hard, np.clip(there, low, high), there)
-            image = step(there)
+                trial = np.where(hard, np.clip(trial, low, high), trial)
+            image = step(trial)
             if not np.isnan(image[0]):
                 break
             change *= 0.5
-        x = there
+        x = trial
         if (np.abs(x - middle) > outside).any():
             return None
     return None
@@ -181,12 +181,12 @@ def returning_cycles(
     """
     box = box[1:]
     length, size = (0.5 if simulator.mirrored else 1.0), box[:, 1] - box[:, 0]
-    known = np.empty((0, len(box)))
+    earlier = np.empty((0, len(box)))
 
     def ahead(x: np.ndarray, count: int) -> np.ndarray:
         """The `count`-th iterate of the map."""
-        there = later(simulator, x, count * length)
-        return simulator.image(there) if length == 0.5 and count % 2 else there
+        end = later(simulator, x, count * length)
+        return simulator.image(end) if length == 0.5 and count % 2 else end
 
     for start in starts:
         time = float(start[0]) / (2.0 * np.pi)
@@ -195,16 +195,16 @@ def returning_cycles(
             continue
         for count in range(1, round(longest / length) + 1):
             x = fixed_point(lambda y, n=count: ahead(y, n), begin, box, simulator.hard)
-            if x is None or np.any(np.abs((known - x) / size).max(axis=1) < SIMULATING.same):
+            if x is None or np.any(np.abs((earlier - x) / size).max(axis=1) < SIMULATING.same):
                 continue
             points = [x]
             for _ in range(count - 1):
                 points.append(ahead(points[-1], 1))
-            known = np.concatenate([known, points])
-            again = (
+            earlier = np.concatenate([earlier, points])
+            repeats = (
                 np.abs((np.array(points[1:]).reshape(-1, len(x)) - x) / size).max(axis=1) < SIMULATING.same
             )
-            prime = int(np.argmax(again)) + 1 if again.any() else count
+            prime = int(np.argmax(repeats)) + 1 if repeats.any() else count
             found = _cycle_through(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2)
             if found is not None:
                 yield found

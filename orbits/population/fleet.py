@@ -52,7 +52,7 @@ def distinct(cycles: Iterable[Orbit], parameter: str, p: float) -> list[tuple[Pr
         problem = orbit.problem(parameter)
         u = orbit.seed(problem)[0]
         form = problem.canonical(u, p)
-        if not any(alike(form, known) for known in forms):
+        if not any(alike(form, other) for other in forms):
             forms.append(form)
             found.append((problem, u))
     return found
@@ -76,7 +76,7 @@ class _Marks:
     def distances(self, event: str, points: np.ndarray) -> np.ndarray:
         """Distances of points (n, d) from the motion and from its mirror image, shape (2, n)."""
         rows = [table.get(event, np.empty((0, points.shape[-1]))) for table in (self.own, self.image)]
-        gaps = [(np.abs(points[:, None] - known) * self.counted).max(axis=2) for known in rows]
+        gaps = [(np.abs(points[:, None] - marks) * self.counted).max(axis=2) for marks in rows]
         return np.array([gap.min(axis=1, initial=np.inf) for gap in gaps])
 
 
@@ -171,47 +171,47 @@ class Fleet:
         not settled in T periods give the same evidence as one that has not settled in n T. If similar starts have settled late, their number gives
         the mean life of a transient: one motion is simulated for several mean lives, and if it settles, all are.
         """
-        alike = (self.index < 0) & (batch.outcomes == Outcome.WANDERING)
-        alike &= np.arange(len(alike)) >= i
+        similar = (self.index < 0) & (batch.outcomes == Outcome.WANDERING)
+        similar &= np.arange(len(similar)) >= i
         gaps = np.maximum(batch.gaps, np.finfo(float).tiny)
-        alike &= np.abs(np.log10(gaps / gaps[i])) < 1.5
-        alike[i] = True
-        kind, exponent, error = self._grown()
+        similar &= np.abs(np.log10(gaps / gaps[i])) < 1.5
+        similar[i] = True
+        kind, exponent, error = self._growth()
         ended = (batch.outcomes == Outcome.SETTLED) & (batch.lasted > SIMULATING.late * batch.lasted[i])
-        together, lives = float(batch.lasted[alike].sum()), 0.0
+        total, lives = float(batch.lasted[similar].sum()), 0.0
         if kind == "chaotic" and ended.any():
-            life = (together + float(batch.lasted[ended].sum())) / np.count_nonzero(ended)
+            life = (total + float(batch.lasted[ended].sum())) / np.count_nonzero(ended)
             lives = min(SIMULATING.lives * life, self.simulator.waiting.slow)
-        followed, enough, looks = (0.0, lives, 0) if lives else (together, ENOUGH, 0)
-        while looks < PATIENCE or (lives and followed < enough):
-            if kind == "chaotic" and followed >= enough:
+        followed, needed, looks = (0.0, lives, 0) if lives else (total, ENOUGH, 0)
+        while looks < PATIENCE or (lives and followed < needed):
+            if kind == "chaotic" and followed >= needed:
                 break
-            looks, begun = looks + 1, self.simulator.time
+            looks, start_time = looks + 1, self.simulator.time
             found = self._looked_at(200.0, self.longest, 2)
             if found.recurrent:
                 if lives:
-                    self._longer(batch, alike, lives)
+                    self._longer(batch, similar, lives)
                 return self._found(found, i)
             self.simulator.skip(LATE)
-            followed += self.simulator.time - begun
+            followed += self.simulator.time - start_time
         if kind != "chaotic":  # again, nearer to the attractor
-            kind, exponent, error = self._grown()
+            kind, exponent, error = self._growth()
         if kind == "slow":  # neighbours converge to it: it may be a long cycle
             found = self._looked_at(0.0, RARE, 1)
             if found.recurrent:
                 return self._found(found, i)
         state = batch.states[i].copy()
-        return self._assign(alike, Motion(kind, exponent=exponent, error=error, state=state))
+        return self._assign(similar, Motion(kind, exponent=exponent, error=error, state=state))
 
-    def _longer(self, batch: Batch, alike: np.ndarray, periods: float) -> None:
+    def _longer(self, batch: Batch, similar: np.ndarray, periods: float) -> None:
         """Simulate chaotic motions on, after one of them has settled."""
         before = float(batch.lasted.sum())
-        self.simulator.settle_longer(batch, alike, self.longest, periods, self.workers)
+        self.simulator.settle_longer(batch, similar, self.longest, periods, self.workers)
         self.work += float(batch.lasted.sum()) - before
 
     # ------------------------------------------------------------------ followed alone
     def _followed(self, i: int) -> None:
-        simulator, begun = self.simulator, self.simulator.count
+        simulator, start_count = self.simulator, self.simulator.count
         unending = [m.kind in UNENDING for m in self.motions]
         before: tuple[_Marks | None, float] = (None, np.inf)
         for looks, block in enumerate(BLOCKS):
@@ -236,11 +236,11 @@ class Fleet:
                 return self._assign(i, Motion("stuck", state=simulator.state.copy()))
             if run.chatters and next(returns(run, self.longest, simulator.waiting.returned), None):
                 return self._assign(i, Motion("chatter", state=simulator.state.copy()))
-            if (looks >= TOLD and any(unending)) or simulator.count - begun > ENOUGH:
+            if (looks >= TOLD and any(unending)) or simulator.count - start_count > ENOUGH:
                 break
         if any(unending):
             return self._assign(i, unending.index(True))
-        kind, exponent, error = self._grown()
+        kind, exponent, error = self._growth()
         state = simulator.state.copy()
         # if neighbours converge to it, it may be a long cycle
         if kind == "slow" and self._recurs(i, simulator.look(RARE), RARE):
@@ -264,7 +264,7 @@ class Fleet:
         rest = rest_near(run.model, run.modes[-1], run.params, run.last)
         return (None, None) if rest is None else (rest.problem(self.parameter), rest.state)
 
-    def _grown(self) -> tuple[str, float, float]:
+    def _growth(self) -> tuple[str, float, float]:
         """Kind of a motion that has not settled, its largest Lyapunov exponent per forcing period and the standard error."""
         exponent, error = self.simulator.growth()
         self.work += 0.0 if self.batch is None else self.batch.growth
@@ -289,20 +289,20 @@ class Fleet:
     ) -> None:
         """Assign starts that have none yet to a motion or its mirror image."""
         k = motion if isinstance(motion, int) else self._place(motion)
-        here = np.zeros(len(self.index), dtype=bool)
-        here[members] = True
-        here &= self.index < 0
-        self.mirrored[here] = np.broadcast_to(mirrored, here.shape)[here]
-        self.index[here] = k
+        chosen = np.zeros(len(self.index), dtype=bool)
+        chosen[members] = True
+        chosen &= self.index < 0
+        self.mirrored[chosen] = np.broadcast_to(mirrored, chosen.shape)[chosen]
+        self.index[chosen] = k
 
     def _place(self, motion: Motion[Problem]) -> int:
         """Index of a motion, which is added if it is new."""
         form = None
         if motion.problem is not None and motion.u is not None:
             form = motion.problem.canonical(motion.u, self.p)
-        for k, (known, other) in enumerate(zip(self.motions, self._forms)):
+        for k, (earlier, other) in enumerate(zip(self.motions, self._forms)):
             one = alike(form, other) if form is not None and other is not None else form is other
-            if one and known.kind == motion.kind and known.periods == motion.periods:
+            if one and earlier.kind == motion.kind and earlier.periods == motion.periods:
                 return k
         self.motions.append(motion)
         self._forms.append(form)
@@ -341,9 +341,9 @@ class Fleet:
         recurs = (batch.outcomes == Outcome.SETTLED) & (batch.periods == max(periods, 1))
         if periods > self.longest:
             recurs = batch.outcomes == Outcome.WANDERING
-        here = (np.minimum(own, image) < SIMULATING.nearly) & recurs
-        here[i] = True
-        return self._assign(here, k, image < own)
+        on_motion = (np.minimum(own, image) < SIMULATING.nearly) & recurs
+        on_motion[i] = True
+        return self._assign(on_motion, k, image < own)
 
     def _marks(self, place: int, orbit: Orbit | None, periods: int, free: bool) -> _Marks:
         """Section points of an orbit, or in a batch of the simulator's motion, and of its mirror image if that is another motion."""
@@ -357,7 +357,7 @@ class Fleet:
         if orbit is not None and not model.forced:
             image = _after_events(orbit.mirror()) if mirrored else {}
             return _Marks(place, _after_events(orbit), image, counted)
-        state, begun = simulator.state.copy(), simulator.time
+        state, start_time = simulator.state.copy(), simulator.time
         if orbit is not None and self.batch is None:
             simulator.begin(orbit.word, orbit.nodes[0])
         own, image, first = [], [], np.floor(simulator.time) + 1.0
@@ -368,7 +368,7 @@ class Fleet:
             image.append(simulator.image(simulator.point))
             simulator.follow(first + k + 1.0)
         simulator.go_on(state)
-        self._begun += simulator.time - begun
+        self._begun += simulator.time - start_time
         return _Marks(place, {"": np.array(own)}, {"": np.array(image)} if mirrored else {}, counted)
 
 

@@ -94,18 +94,18 @@ def go_round(
         return Round(None, str(error))
     n = len(word)
     listed = [(word.events[i % n], word.modes[i % n]) for i in range(1, wanted + 1)]
-    for i, (seen, said) in enumerate(zip(run.occurrences, listed)):
-        if seen[0] != said[0]:
-            return Round(run, f"event {i + 1} is {seen[0]}, listed was {said[0]}")
-        if seen[1] != said[1]:
-            return Round(run, f"event {i + 1} ({seen[0]}) leads into mode {seen[1]}, listed was {said[1]}")
+    for i, (event, claim) in enumerate(zip(run.occurrences, listed)):
+        if event[0] != claim[0]:
+            return Round(run, f"event {i + 1} is {event[0]}, listed was {claim[0]}")
+        if event[1] != claim[1]:
+            return Round(run, f"event {i + 1} ({event[0]}) leads into mode {event[1]}, listed was {claim[1]}")
     if len(run) < wanted:
         return Round(run, f"after {len(run)} events {run.reason}, where {listed[len(run)][0]} was listed")
     return Round(run, "")
 
 
 # ---------------------------------------------------------------------- one number
-def deviation(orbit: Motion, known: Known) -> float:
+def deviation(orbit: Motion, examined: Known) -> float:
     """Largest deviation of the simulation from an orbit over one period; inf if it follows another motion.
 
     Times and states are compared event by event. If these deviate, for an orbit at a border or with large multipliers, positions are
@@ -116,15 +116,15 @@ def deviation(orbit: Motion, known: Known) -> float:
     if np.any(orbit.durations < BACKWARD):
         return math.inf
     if not len(orbit.word):
-        return by_positions(orbit, known)
+        return by_positions(orbit, examined)
     error = by_events(orbit)
     if error < REPLAYING.agreed:
         return error
     if not math.isfinite(error):
-        margins, multipliers = known()
+        margins, multipliers = examined()
         if not (np.any(np.abs(margins) < REPLAYING.close) or np.any(np.abs(multipliers) > REPLAYING.wild)):
             return max(by_events(orbit, place, 1) for place in range(len(orbit.word)))
-    return min(error, by_positions(orbit, known))
+    return min(error, by_positions(orbit, examined))
 
 
 def by_events(orbit: Motion, first: int = 0, count: int | None = None) -> float:
@@ -136,12 +136,12 @@ def by_events(orbit: Motion, first: int = 0, count: int | None = None) -> float:
     if run is None or message:
         return math.inf
     late = run.clocks[1:] - run.clocks[0] - np.cumsum(orbit.durations[wanted - 1])
-    apart = run.points - flow_of(orbit.model).points(orbit)[wanted]
+    differences = run.points - flow_of(orbit.model).points(orbit)[wanted]
     length, rate = orbit.model.natural_units(orbit.params)
-    return float(max(np.abs(late).max(), np.abs(apart).max() / max(1.0, length, length * rate)))
+    return float(max(np.abs(late).max(), np.abs(differences).max() / max(1.0, length, length * rate)))
 
 
-def by_positions(orbit: Motion, known: Known) -> float:
+def by_positions(orbit: Motion, examined: Known) -> float:
     """Largest difference of the positions at many instants of a period.
 
     The simulation is restarted at each definite event: an impact of vanishing speed has infinite derivatives, and a very
@@ -155,19 +155,21 @@ def by_positions(orbit: Motion, known: Known) -> float:
     clock = np.append(clock, clock + orbit.durations.sum() if n else clock)
     first = np.searchsorted(motion["segment"], np.arange(max(n, 1) + 1))
     first = np.append(first[:-1], first + len(motion["segment"]))  # two rounds of the cycle
-    places = _definite(orbit, known()[0]) if n else [0]
+    places = _definite(orbit, examined()[0]) if n else [0]
     simulator, worst = simulator_of(model, orbit.params), 0.0
     for place, end in zip(places, [*places[1:], places[0] + max(n, 1)]):
         part = slice(first[place], first[end])
-        since = np.maximum(
+        times = np.maximum(
             clock[part] - clock[part][0], 0.0
         )  # a segment of no length may end before it begins
         if n:
             begin = partial(simulator.begin, orbit.word.rotate(place), orbit.nodes[place])
         else:
-            here = np.array([motion[name][0] for name in names])
-            begin = partial(simulator.start, here, float(clock[0]) / TWO_PI)
-        worst = max(worst, _apart(simulator, begin, since, claimed[part], columns, 100 * n + 1000))
+            state = np.array([motion[name][0] for name in names])
+            begin = partial(simulator.start, state, float(clock[0]) / TWO_PI)
+        worst = max(
+            worst, _largest_difference(simulator, begin, times, claimed[part], columns, 100 * n + 1000)
+        )
     return worst / model.natural_units(orbit.params)[0]
 
 
@@ -176,23 +178,23 @@ def _positions(orbit: Motion) -> list[int]:
     return [entry - 1 for entry in flow_of(orbit.model).position_entries(orbit.model)]
 
 
-def _apart(
+def _largest_difference(
     simulator: Simulator,
     begin: Callable[[], None],
-    since: np.ndarray,
+    times: np.ndarray,
     claimed: np.ndarray,
     columns: list[int],
     most: int,
 ) -> float:
-    """Largest difference of simulated positions from the claimed ones, shape (m, c), at the clock times `since` after `begin`; inf if the simulation ends earlier."""
+    """Largest difference of simulated positions from the claimed ones, shape (m, c), at the clock times `times` after `begin`; inf if the simulation ends earlier."""
     try:
         begin()
-        begun = simulator.time
-        run = simulator.run(float(since[-1]) / TWO_PI + SIMULATING.whole, most)
-        there = run.coordinates(begun + since / TWO_PI)[:, columns]
+        start_time = simulator.time
+        run = simulator.run(float(times[-1]) / TWO_PI + SIMULATING.whole, most)
+        positions = run.coordinates(start_time + times / TWO_PI)[:, columns]
     except (SimulationError, ValueError):
         return math.inf
-    return float(np.abs(there - claimed).max())
+    return float(np.abs(positions - claimed).max())
 
 
 def _definite(orbit: Motion, margins: np.ndarray) -> list[int]:
@@ -313,14 +315,14 @@ def _following(nodes: np.ndarray, periods: int) -> np.ndarray:
 
 def _motion(simulator: Simulator, orbit: Motion) -> float:
     """Largest difference of the positions at the phases of the nodes, including the return of the first."""
-    since = np.append(orbit.nodes[:, 0] - orbit.nodes[0, 0], TWO_PI * orbit.periods)
-    if since.min() < 0.0 or since.max() > since[-1]:
+    times = np.append(orbit.nodes[:, 0] - orbit.nodes[0, 0], TWO_PI * orbit.periods)
+    if times.min() < 0.0 or times.max() > times[-1]:
         return np.inf  # time does not run forward through these nodes
     columns, word = _positions(orbit), orbit.word
     claimed = flow_of(orbit.model).points(orbit)[:, columns]
     begin = partial(simulator.begin, word, orbit.nodes[0])
-    return _apart(
-        simulator, begin, since, np.append(claimed, claimed[:1], axis=0), columns, 100 * len(word) + 1000
+    return _largest_difference(
+        simulator, begin, times, np.append(claimed, claimed[:1], axis=0), columns, 100 * len(word) + 1000
     )
 
 
@@ -358,7 +360,7 @@ def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
         LONGEST / periods, np.ceil(np.log(REPLAYING.forgotten) / np.log(max(growth, SMALLEST))) + 10.0
     )
 
-    def later(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
+    def distance_after(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
         """Distance from the wanted nodes after `wait` cycles from a start displaced by `size`, and the simulated nodes."""
         simulator.begin(word, nodes[0])
         simulator.go_on(simulator.state, size)
@@ -367,15 +369,16 @@ def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
 
     displaced, back = REPLAYING.displaced, REPLAYING.back
     tries = ((displaced, back), *REPLAYING.nearer)
-    if any(later(size, nodes)[0] < near for size, near in tries):
+    if any(distance_after(size, nodes)[0] < near for size, near in tries):
         return True
-    off, settled = later(0.0, nodes)
-    if not off < displaced:
+    distance, settled = distance_after(0.0, nodes)
+    if not distance < displaced:
         return False
-    if off > back and later(displaced, settled)[0] < back:
+    if distance > back and distance_after(displaced, settled)[0] < back:
         return True
     return any(
-        later(size, nodes)[0] < min(displaced, REPLAYING.shrunk * later(size, nodes, 0.0)[0])
+        distance_after(size, nodes)[0]
+        < min(displaced, REPLAYING.shrunk * distance_after(size, nodes, 0.0)[0])
         for size in REPLAYING.beside_folds
     )
 
@@ -384,15 +387,15 @@ def _nearest(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int) 
     """Smallest distance of the simulated motion from the orbit's nodes, and the simulated nodes there."""
     n, best = len(word), (np.inf, nodes)
     run = simulator.run(2.0 * periods + 1.0, 3 * n + 3)
-    listed, seen, found = [*zip(word.events, word.modes)], [*run.occurrences], run.nodes
-    for k in range(max(0, len(seen) - n + 1)):
-        if seen[k : k + n] == listed:
-            here = found[k : k + n].copy()
+    listed, occurrences, found = [*zip(word.events, word.modes)], [*run.occurrences], run.nodes
+    for k in range(max(0, len(occurrences) - n + 1)):
+        if occurrences[k : k + n] == listed:
+            simulated = found[k : k + n].copy()
             for j in flow_of(simulator.model).loose(simulator.model, word):
-                here[:, j] += nodes[0, j] - here[0, j]
-            gap = here - nodes
+                simulated[:, j] += nodes[0, j] - simulated[0, j]
+            gap = simulated - nodes
             gap[:, 0] -= TWO_PI * np.round(gap[:, 0] / TWO_PI)
             distance = float(np.abs(gap).max())
             if distance < best[0]:
-                best = distance, here
+                best = distance, simulated
     return best

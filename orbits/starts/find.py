@@ -64,10 +64,10 @@ def check_guess(
     except (TypeError, ValueError):
         raise StartError(f"guess = {guess!r} is no table of numbers: give one list per event") from None
     if nodes.shape != (max(len(word), 1), len(names)):
-        what = f"[{', '.join(names)}]"
+        columns = f"[{', '.join(names)}]"
         raise StartError(
             f"guess has the shape {nodes.shape}, but the word {word.text!r} has {len(word)} events "
-            f"({' '.join(word.events)}): give one {what} for each, slips included"
+            f"({' '.join(word.events)}): give one {columns} for each, slips included"
         )
     if not np.all(np.isfinite(nodes)):
         raise StartError(
@@ -147,9 +147,9 @@ def find(
         return orbit
     unshaken = model.unshaken(params)
     if unshaken is not None:
-        zero, would = unshaken
+        zero, example = unshaken
         raise StartError(
-            f"{zero}: nothing shakes the machine, so no motion with the word {reading.text!r} lasts; for example {would}"
+            f"{zero}: nothing shakes the machine, so no motion with the word {reading.text!r} lasts; for example {example}"
         )
     found = (
         f"the nearest motion that the simulator finds is {nearest}"
@@ -190,9 +190,9 @@ def _from_guess(first: Orbit) -> Orbit | None:
 
 def _warn(guess: Sequence[Sequence[float]] | np.ndarray | None, word: Word, instead: str) -> None:
     if guess is not None:
-        shown = word.text if len(word) <= LONG else f"{word.text[:LONG]}..."
+        text = word.text if len(word) <= LONG else f"{word.text[:LONG]}..."
         warnings.warn(
-            f"the guess does not lead to an orbit {shown!r}; the orbit was found by {instead}",
+            f"the guess does not lead to an orbit {text!r}; the orbit was found by {instead}",
             StartWarning,
             stacklevel=4,
         )
@@ -227,11 +227,11 @@ def _repeated(
 
 def _stuck(orbit: Orbit) -> Orbit:
     if not orbit.real:
-        way = "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
+        advice = "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
         if not orbit.model.has_mirror(orbit.params):  # on a slope it may slide down and lie on a wall
-            way += "; if gravity pulls it to a wall and keeps it there, there is no motion to follow: give more friction or a smaller slope"
+            advice += "; if gravity pulls it to a wall and keeps it there, there is no motion to follow: give more friction or a smaller slope"
         raise StartError(
-            f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); {way}"
+            f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); {advice}"
         )
     return orbit
 
@@ -347,12 +347,12 @@ def _agreement(word: Word, ways: np.ndarray) -> float:
     return float(np.dot(word.modes, ways))
 
 
-def _others(reading: Word, ways: np.ndarray) -> list[Word]:
+def _others(reading: Word, directions: np.ndarray) -> list[Word]:
     """Words with the same letters and other directions of flight."""
     found = [reading.mirror()] if reading.impact_free else []
     slips = [
-        f"{letter}{'+' if way > 0.0 else '-'}" if letter == "u" and way else letter
-        for letter, way in zip(reading.events, ways)
+        f"{letter}{'+' if direction > 0.0 else '-'}" if letter == "u" and direction else letter
+        for letter, direction in zip(reading.events, directions)
     ]
     with suppress(WordError):
         found.append(Word.parse("".join(slips)))
@@ -371,22 +371,22 @@ def readings(word: Word, mirror: bool) -> list[Word]:
     return found
 
 
-def closed_orbits(model: Model, params: np.ndarray, made: type[Orbit]) -> Iterator[Orbit]:
+def closed_orbits(model: Model, params: np.ndarray, orbit_class: type[Orbit]) -> Iterator[Orbit]:
     """Yield the real orbits among rest and the closed forms (`Model.closed_words`), stable or not.
 
     Parameters
     ----------
     model : Model
     params : float array (P,)
-    made : type
+    orbit_class : type
         Class of the orbits: `orbits.orbit.Orbit` or a subclass.
     """
-    rest = made.at_rest(model, params)
+    rest = orbit_class.at_rest(model, params)
     if rest.real:
         yield rest
     for text in model.closed_words:
         word = Word.parse(text, frictionless=model.frictionless(params))
         for nodes in model.start_nodes(word, 1, params):
-            orbit = polish(made(model, word, 1, nodes, params))
+            orbit = polish(orbit_class(model, word, 1, nodes, params))
             if orbit is not None and orbit.real:
                 yield orbit

@@ -101,11 +101,11 @@ class Word:
         return cls(*read(text, alphabet, absent), alphabet)
 
     @classmethod
-    def described(cls, about: Mapping[str, Any], alphabet: Alphabet | None = None) -> Word:
+    def described(cls, data: Mapping[str, Any], alphabet: Alphabet | None = None) -> Word:
         """Return the word with this description (result of `describe`); default alphabet: that of the shaken machines."""
-        modes = tuple(tuple(mode) if isinstance(mode, list) else mode for mode in about.get("modes", ()))
+        modes = tuple(tuple(mode) if isinstance(mode, list) else mode for mode in data.get("modes", ()))
         # files of version 0.1 have no entry "events" for the absorber at rest
-        return cls(tuple(about.get("events", "")), modes, alphabet or shaken(bool(about.get("frictionless"))))
+        return cls(tuple(data.get("events", "")), modes, alphabet or shaken(bool(data.get("frictionless"))))
 
     def like(self, events: Sequence[str], modes: Sequence[Mode]) -> Word:
         """Return a word with other events and modes over the same alphabet."""
@@ -130,9 +130,9 @@ class Word:
         ):  # fmt: skip
             text = self._written(signed, noted)
             with suppress(WordError):
-                again = self.over(alphabet, text, alphabet.absent_in(self.modes[0]))
-                places = range(len(self)) if turns and again.events == self.events else (0,)
-                if any(again.rotate(k) == self for k in places):
+                reread = self.over(alphabet, text, alphabet.absent_in(self.modes[0]))
+                places = range(len(self)) if turns and reread.events == self.events else (0,)
+                if any(reread.rotate(k) == self for k in places):
                     return text  # the same cycle; with turns alone the reading may begin at a different event
         return (
             self._written(True)
@@ -424,7 +424,7 @@ def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
 def limits_of(multipliers: np.ndarray) -> np.ndarray:
     """Replace multipliers that grow without bound towards a border (as at a graze) by infinity with the same sign."""
     limits = np.array(multipliers, dtype=np.complex128)
-    grown = np.abs(limits) >= 0.999 * UNBOUNDED
+    unbounded = np.abs(limits) >= 0.999 * UNBOUNDED
     for part in limits.view(np.float64).reshape(-1, 2).T:
-        part[grown & (np.abs(part) > 1.0)] *= np.inf
+        part[unbounded & (np.abs(part) > 1.0)] *= np.inf
     return limits

@@ -31,7 +31,7 @@ import numpy as np
 
 from orbits.contacts import HIT, NAMES, SLIP, STICK, SWITCH, Letter, NotAlternating
 from orbits.contacts import NAMES as KINDS
-from orbits.contacts.dry_friction import ABSENT, SLIDE_BACK, SLIDE_ON, STUCK, Beat, CannotFollow, FrictionLaw
+from orbits.contacts.dry_friction import ABSENT, SLIDE_BACK, SLIDE_ON, STUCK, CannotFollow, Event, FrictionLaw
 from orbits.contacts.wall import FREE, WallLaw
 
 if TYPE_CHECKING:
@@ -179,17 +179,17 @@ class Alphabet:
         """Whether an event belongs to a contact, or is an impact that changes the contact's velocity or surface."""
         return letter.contact == contact or (letter.contact, contact) in self.flips
 
-    def together(self, here: Letter, there: Letter) -> str:
+    def together(self, first: Letter, second: Letter) -> str:
         """Return the kind of border at which two consecutive events coincide."""
-        if here.contact == there.contact:
-            return self.contacts[here.contact].together(here.kind, there.kind)
-        for one, other in ((here, there), (there, here)):
+        if first.contact == second.contact:
+            return self.contacts[first.contact].together(first.kind, second.kind)
+        for one, other in ((first, second), (second, first)):
             if (one.contact, other.contact) in self.rides:
                 return self.contacts[one.contact].together(one.kind, one.kind)
-        if self.touches(here, there.contact):
-            return self.contacts[there.contact].together(there.kind, there.kind)
-        if self.touches(there, here.contact):
-            return self.contacts[here.contact].together(here.kind, here.kind)
+        if self.touches(first, second.contact):
+            return self.contacts[second.contact].together(second.kind, second.kind)
+        if self.touches(second, first.contact):
+            return self.contacts[first.contact].together(first.kind, first.kind)
         return "corner"
 
 
@@ -221,11 +221,11 @@ class WordError(ValueError):
 
 def bracket(mode: Sequence[int], alphabet: Alphabet) -> str:
     """Return a mode as written after an event, in brackets."""
-    shown = [
+    signs = [
         MARKS[value] if not isinstance(contact, WallLaw) else ("h" if value else "")
         for value, contact in zip(mode, alphabet.contacts)
     ]
-    return f"[{''.join(shown)}]"
+    return f"[{''.join(signs)}]"
 
 
 def read(
@@ -260,14 +260,14 @@ def read(
     if not isinstance(text, str | Sequence):
         raise WordError(f"word = {text!r} is no word: give the events of a period as text, such as 'LR'")
     source = (text if isinstance(text, str) else " ".join(map(str, text))).replace("−", "-")
-    shown = repr(source if len(source) <= SHOWN else f"{source[:40]}...")
+    quoted = repr(source if len(source) <= SHOWN else f"{source[:40]}...")
     if alphabet.alone is not None:
         source = _from_maps(source, alphabet)
-    items, alone = _items(source, alphabet, shown)
+    items, mode = _items(source, alphabet, quoted)
     if not items:
         if alphabet.alone is not None:
             return (), ()
-        return (), (_mode_of(alone, alphabet, shown) if alone else _open(alphabet, absent),)
+        return (), (_mode_of(mode, alphabet, quoted) if mode else _open(alphabet, absent),)
     letters = alphabet.letters
     expanded: list[tuple[str, str | None]] = []
     notes: list[str | None] = []
@@ -281,8 +281,8 @@ def read(
         else:
             expanded.append((item, sign))
             notes.append(note)
-    fixed = {i: _mode_of(note, alphabet, shown) for i, note in enumerate(notes) if note}
-    return tuple(text for text, _ in expanded), _modes(expanded, alphabet, absent, fixed, shown)
+    fixed = {i: _mode_of(note, alphabet, quoted) for i, note in enumerate(notes) if note}
+    return tuple(text for text, _ in expanded), _modes(expanded, alphabet, absent, fixed, quoted)
 
 
 def _from_maps(source: str, alphabet: Alphabet) -> str:
@@ -296,30 +296,30 @@ def _from_maps(source: str, alphabet: Alphabet) -> str:
 
 
 def _items(
-    source: str, alphabet: Alphabet, shown: str
+    source: str, alphabet: Alphabet, quoted: str
 ) -> tuple[list[tuple[str, str | None, str | None]], str]:
     """Split a text into letters with their signs and modes; also return a mode that is written without an event."""
     letters = alphabet.letters
     tokens = "|".join(map(re.escape, sorted(letters, key=len, reverse=True))) or "(?!)"
     pattern = re.compile(rf"\s*(?:({tokens})([+-]?)(\[[^\]]*\])?|(\[[^\]]*\]))\s*")
-    place, items, alone = 0, [], ""
+    place, items, mode = 0, [], ""
     source = source.strip()
     while place < len(source):
         match = pattern.match(source, place)
         if match is None:
-            known = ", ".join(f"{text} ({NAMES[letter.kind]})" for text, letter in letters.items())
+            choices = ", ".join(f"{text} ({NAMES[letter.kind]})" for text, letter in letters.items())
             raise WordError(
-                f"word {shown} has the letter {source[place]!r}: this machine has {known or 'no events'}; the direction of a slip "
+                f"word {quoted} has the letter {source[place]!r}: this machine has {choices or 'no events'}; the direction of a slip "
                 "is written as a sign, + or -, after it or after its stick"
             )
         if match[1] is None:
-            alone = match[4]
+            mode = match[4]
         else:
             if match[2] and letters[match[1]].kind not in (STICK, SLIP):
-                raise WordError(f"word {shown}: only a stick or a slip takes a sign, not {match[1]!r}")
+                raise WordError(f"word {quoted}: only a stick or a slip takes a sign, not {match[1]!r}")
             items.append((match[1], match[2] or None, match[3]))
         place = match.end()
-    return items, alone
+    return items, mode
 
 
 def _slips_later(items: Sequence[Any], place: int, letters: Mapping[str, Letter]) -> bool:
@@ -332,7 +332,7 @@ def _slips_later(items: Sequence[Any], place: int, letters: Mapping[str, Letter]
     return False
 
 
-def _mode_of(note: str, alphabet: Alphabet, shown: str) -> tuple[int, ...]:
+def _mode_of(note: str, alphabet: Alphabet, quoted: str) -> tuple[int, ...]:
     """Read a mode in brackets."""
     marks = list(note[1:-1])
     values = {mark: value for value, mark in MARKS.items()}
@@ -349,7 +349,7 @@ def _mode_of(note: str, alphabet: Alphabet, shown: str) -> tuple[int, ...]:
             break
     if marks or alphabet.alone is not None:
         raise WordError(
-            f"word {shown}: {note} must give one of + - 0 for every friction and + or - for every switch, in their order"
+            f"word {quoted}: {note} must give one of + - 0 for every friction and + or - for every switch, in their order"
         )
     return tuple(mode)
 
@@ -372,7 +372,7 @@ def _modes(
     alphabet: Alphabet,
     absent: frozenset[int],
     fixed: Mapping[int, tuple[int, ...]],
-    shown: str,
+    quoted: str,
 ) -> tuple[Any, ...]:
     """Return the mode after each event; a direction that the events do not determine is a reversal at a slip, else the default of the law."""
     letters = [alphabet.letters[text] for text, _ in items]
@@ -387,13 +387,13 @@ def _modes(
         elif j in absent or j in alphabet.without:
             if any(letter.contact == j for letter in letters):
                 raise WordError(
-                    f"word {shown}: friction {contact.name!r} is zero here, and its turns, sticks and slips are no events without "
+                    f"word {quoted}: friction {contact.name!r} is zero here, and its turns, sticks and slips are no events without "
                     "friction: write the other events only, or give friction (and gravity) values above 0"
                 )
             flips = [alphabet.flips.get((letter.contact, j)) for letter in letters]
             columns.append([ABSENT if j in absent else int(sign or 0) for sign in flips])
         elif isinstance(contact, FrictionLaw):
-            columns.append(_directions(j, letters, signs, alphabet, noted, shown))
+            columns.append(_directions(j, letters, signs, alphabet, noted, quoted))
         else:
             hits = {
                 i: alphabet.flips[letter.contact, j]
@@ -405,7 +405,7 @@ def _modes(
             except NotAlternating:
                 between = "; impacts may change its sign between them" if hits else ""
                 raise WordError(
-                    f"word {shown}: the crossings of switch {contact.name!r} must alternate, "
+                    f"word {quoted}: the crossings of switch {contact.name!r} must alternate, "
                     f"{contact.letters[0]} and {contact.letters[1]}{between}"
                 ) from None
     return tuple(columns[0]) if alphabet.alone is not None else tuple(zip(*columns))
@@ -417,7 +417,7 @@ def _directions(
     signs: Sequence[int | None],
     alphabet: Alphabet,
     noted: Mapping[int, int],
-    shown: str,
+    quoted: str,
 ) -> list[int]:
     """Return the entry of friction j after each event: its law computes it for events that affect it; between these it stays the same."""
     friction: FrictionLaw = alphabet.contacts[j]
@@ -425,16 +425,16 @@ def _directions(
     if not places:
         return [next(iter(noted.values()), 1)] * len(letters)
     beats = [
-        Beat(letters[i].kind, alphabet.flips[letters[i].contact, j] if letters[i].kind == HIT else signs[i])
+        Event(letters[i].kind, alphabet.flips[letters[i].contact, j] if letters[i].kind == HIT else signs[i])
         for i in places
     ]
     last = np.searchsorted(places, range(len(letters)), side="right") - 1  # -1: the last one, cyclically
-    known = {int(last[i]) % len(places): mode for i, mode in noted.items()}
+    fixed = {int(last[i]) % len(places): mode for i, mode in noted.items()}
     try:
-        modes = friction.directions(beats, known)
+        modes = friction.directions(beats, fixed)
     except CannotFollow as error:
-        place = places[error.beat]
-        letter, before = letters[place], letters[places[error.beat - 1]]
+        place = places[error.event]
+        letter, before = letters[place], letters[places[error.event - 1]]
         turn, stick, slip = friction.letters
         hint = ""
         if letter.kind == SLIP:
@@ -442,7 +442,7 @@ def _directions(
         elif letter.kind == HIT and letter.contact == before.contact:
             hint = f"; between two impacts on one wall there is a turn ({letter.text}{turn}{letter.text}) or a stick ({letter.text}{stick}{letter.text})"
         raise WordError(
-            f"word {shown} cannot be: after {before.text} friction {friction.name!r} is {DOING[error.came]}, "
+            f"word {quoted} cannot be: after {before.text} friction {friction.name!r} is {DOING[error.before]}, "
             f"so event {place + 1}, {letter.text} ({NAMES[letter.kind]}), cannot come next{hint}"
         ) from None
     return [modes[k] for k in last]

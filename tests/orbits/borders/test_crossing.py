@@ -5,7 +5,7 @@ import pytest
 
 import contvines as cv
 from orbits import Cavity
-from orbits.borders.neighbours import Grown, followed
+from orbits.borders.neighbours import BranchAtBorder, followed
 from orbits.borders.rewriting import edits_at
 from orbits.orbit import Orbit
 from orbits.words import Word
@@ -27,7 +27,7 @@ def test_pure_sliding_is_real_up_to_the_walls(room, real):
     assert wall == orbit.margin == pytest.approx(room, abs=1e-12)
     assert orbit.real is real is all(margin.value >= 0.0 for margin in orbit.margins)
     problem = orbit.problem()
-    assert followed(Grown(problem, *orbit.seed(problem), None).orbit()) is real
+    assert followed(BranchAtBorder(problem, *orbit.seed(problem), None).orbit()) is real
     options = {"over": "amplitude", "within": (0.9, 1.1), "depth": 0}
     if not real:
         with pytest.raises(ValueError, match="beyond a border"):
