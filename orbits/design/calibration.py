@@ -80,7 +80,7 @@ def from_impacts(
     measured = _measured(times)
     model = _with_amounts(machine, unknown)
     bounds = _limits(model, unknown, limits)
-    since = measured - measured[0]
+    elapsed = measured - measured[0]
     count = measured.size
 
     def residuals(values: np.ndarray, used: int = count) -> np.ndarray:
@@ -92,12 +92,12 @@ def from_impacts(
             if instants.size < used:
                 instants = simulate(model, start, events=events, **numbers).impact_times[:used]
         if instants.size < used:
-            return np.full(used, 1000.0 * float(since[-1]))
-        late = (instants - instants[0]) - since[:used]
+            return np.full(used, 1000.0 * float(elapsed[-1]))
+        late = (instants - instants[0]) - elapsed[:used]
         return late - late.mean()
 
     found = fit(residuals, _nearer(residuals, unknown, bounds, count), bounds, confidence, spent=1)
-    between = float(since[-1]) / (count - 1)
+    between = float(elapsed[-1]) / (count - 1)
     if found.scatter > ASTRAY * between:
         raise ParameterError(
             f"no {', '.join(unknown)} make{'s' if len(unknown) == 1 else ''} the model follow these impacts: at best they scatter by "
@@ -224,12 +224,12 @@ def from_sweep(
         return np.array([row.measures[measure] for row in rows]) - heights
 
     bounds = _limits(model, unknown, limits)
-    known = np.array([*unknown.values()], dtype=float)
+    first_guess = np.array([*unknown.values()], dtype=float)
     generator = np.random.default_rng(20)
     params = _vector(model, unknown, fixed)
     starts = [None, *(model.random_start(params, generator) for _ in range(STARTS))]
     low, high = np.array([*bounds.values()]).T
-    tried = [known, *(low + generator.random((TRIED, known.size)) * (high - low))]
+    tried = [first_guess, *(low + generator.random((TRIED, first_guess.size)) * (high - low))]
     pairs = [(start, x) for x in tried for start in starts]
     start, x = min(pairs, key=lambda pair: float(np.square(residuals(pair[1], pair[0])).sum()))
     return fit(lambda y: residuals(y, start), dict(zip(unknown, map(float, x))), bounds, confidence)
@@ -275,13 +275,13 @@ def _limits(
     model: Varying, unknown: Mapping[str, float], limits: Mapping[str, Sequence[float]] | None
 ) -> dict[str, tuple[float, float]]:
     """Return limits of every unknown parameter: the given ones, or by default 0.2 to 5 times the guess."""
-    usual = {"restitution": (0.01, 1.0), "friction": (0.0, 2.0)}
+    defaults = {"restitution": (0.01, 1.0), "friction": (0.0, 2.0)}
     found: dict[str, tuple[float, float]] = {}
     for name, value in unknown.items():
         if name in (limits or {}):
             low, high = (limits or {})[name]
-        elif name in usual:
-            low, high = usual[name]
+        elif name in defaults:
+            low, high = defaults[name]
         elif value:
             low, high = sorted(_possible(model, name, value, times * value) for times in (0.2, 5.0))
         else:

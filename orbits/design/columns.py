@@ -31,8 +31,10 @@ def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or "it is no text in UTF-8"
-        raise ParameterError(f"{path}: cannot be read ({why}); give a CSV with {_needed(columns)}") from None
+        reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
+        raise ParameterError(
+            f"{path}: cannot be read ({reason}); give a CSV with {_needed(columns)}"
+        ) from None
     numbered = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
     parting = next((sign for sign in (";", "\t") if numbered and sign in numbered[0][1]), ",")
     heads: list[str] = []
@@ -65,5 +67,5 @@ def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
     return heads, np.array(found)
 
 
-def _needed(count: int, what: str = "column") -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
+def _needed(count: int, noun: str = "column") -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

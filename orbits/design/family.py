@@ -243,15 +243,15 @@ class Family:
 
     def _carried(self, model: Varying, params: np.ndarray, near: Near) -> Orbit | None:
         """Continue the orbit `near`, with its word, to the parameter vector `params`; None if it is not real on the way."""
-        nodes, here, events, modes, periods = near
+        nodes, first, events, modes, periods = near
         word = model.word_of(events, modes, params)
         if word is None:
             return None
         reached, step = 0.0, 1.0
         while True:
             goal = min(reached + step, 1.0)
-            there = params if goal == 1.0 else here + goal * (params - here)
-            orbit = polish(Orbit(model, word, periods, nodes, there))
+            numbers = params if goal == 1.0 else first + goal * (params - first)
+            orbit = polish(Orbit(model, word, periods, nodes, numbers))
             if orbit is None or not orbit.real:
                 step *= 0.5
                 if step < NARROW:
@@ -291,27 +291,27 @@ def swept_responses(
     SimulationError
         If a motion of a sweep grows without bound.
     """
-    seen = _Seen(model, over, values, parameters)
-    seen.run(range(len(values)), None, until_known=False)
-    seen.run(range(len(values))[::-1], None, until_known=False)
+    motions = _SweptMotions(model, over, values, parameters)
+    motions.run(range(len(values)), None, until_known=False)
+    motions.run(range(len(values))[::-1], None, until_known=False)
     population = Population(model, over, parameters)
     for k in sorted({0, len(values) // 2, len(values) - 1}):
         for start in population.starts(DRAWN, 0, values[k]):
             try:
-                row = seen.at(values[k], start)
+                row = motions.at(values[k], start)
             except SimulationError:  # the motion grows without bound, or begins inside a wall
                 continue
-            if not seen.knows(row):
-                seen.rows.append(row)
+            if not motions.knows(row):
+                motions.rows.append(row)
                 for run in (range(k + 1, len(values)), range(k)[::-1]):
-                    seen.run(run, row.detail.state, until_known=True)
-    seen.confirm()
-    seen.climb()
-    seen.confirm()
-    return [(row.value, seen.response(row)) for row in seen.rows]
+                    motions.run(run, row.detail.state, until_known=True)
+    motions.confirm()
+    motions.climb()
+    motions.confirm()
+    return [(row.value, motions.response(row)) for row in motions.rows]
 
 
-class _Seen:
+class _SweptMotions:
     """The motions that simulations have met so far (`rows`), and the steps of `swept_responses`."""
 
     def __init__(
@@ -333,12 +333,12 @@ class _Seen:
 
     def knows(self, row: SweepRow) -> bool:
         """Whether this motion is listed at its value already; all motions without a period count as one."""
-        here, own = [other for other in self.rows if other.value == row.value], self.response(row)
+        listed, own = [other for other in self.rows if other.value == row.value], self.response(row)
         return any(
             abs(self.response(other) - own) <= DESIGNING.agreement * abs(own)
             if row.periods and other.periods
             else row.periods == other.periods
-            for other in here
+            for other in listed
         )
 
     def run(self, places: Sequence[int], start: Start, until_known: bool) -> None:
@@ -369,15 +369,15 @@ class _Seen:
         span, spacing = self.values[-1] - self.values[0], self.values[1] - self.values[0]
         top = max(self.rows, key=lambda row: _number(self.response(row)))
         for side in (-1, 1):
-            here, step = top, 0.5 * spacing
+            highest, step = top, 0.5 * spacing
             for _ in range(CLIMBED):
-                value = min(max(here.value + side * step, self.values[0]), self.values[-1])
-                if step < DESIGNING.narrow * span or value == here.value:
+                value = min(max(highest.value + side * step, self.values[0]), self.values[-1])
+                if step < DESIGNING.narrow * span or value == highest.value:
                     break
-                row = self.at(value, here.detail.state)
+                row = self.at(value, highest.detail.state)
                 self.rows.append(row)
-                if _number(self.response(row)) > _number(self.response(here)):
-                    here = row
+                if _number(self.response(row)) > _number(self.response(highest)):
+                    highest = row
                 else:
                     step *= 0.5
 

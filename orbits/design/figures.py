@@ -288,7 +288,7 @@ def _older_name(init: Callable[..., None]) -> Callable[..., None]:
     """Wrap the constructor so that it accepts `cavity` as the older name of `half_width`."""
 
     @wraps(init)
-    def known(self: Design, *values: Reals, **fields: Reals) -> None:
+    def renamed(self: Design, *values: Reals, **fields: Reals) -> None:
         if "cavity" not in fields:
             return init(self, *values, **fields)
         if "half_width" in fields:
@@ -299,7 +299,7 @@ def _older_name(init: Callable[..., None]) -> Callable[..., None]:
         except ValueError as error:  # the message uses the name that the user wrote
             raise ValueError(str(error).replace("half_width", "cavity", 1)) from None
 
-    return known
+    return renamed
 
 
 Design.__init__ = _older_name(Design.__init__)

@@ -141,7 +141,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
     times, states, energy, taken = [], [], [], []
     hits: list[tuple[float, float, float]] = []
     largest = np.zeros(machine.size)
-    known = machine.equations.energy is not None
+    has_energy = machine.equations.energy is not None
     for own, run, shift in legs:
         speed = float(own.phase_speed(run.params))
         length = run.finish - run.clocks[0]
@@ -151,32 +151,32 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
         times.append(clocks / speed + shift)
         states.append(rows[:, : machine.size])
         phases = np.mod(clocks, TWO_PI) if own.forced else np.zeros(len(clocks))
-        if known:
+        if has_energy:
             numbers = np.zeros((len(rows), len(run.params) + len(own.equations.signed)))
             numbers[:, : len(run.params)] = run.params
             energy.append(own.compiled.energy()(rows, phases, numbers)[:, 0])
         ends = np.append(run.clocks[1:], run.finish)
         for i, (begin, end) in enumerate(zip(run.clocks, ends)):
             turn = TWO_PI * math.floor(begin / TWO_PI) if own.forced else 0.0
-            here, lost = (begin - turn, end - turn), 0.0
+            span, lost = (begin - turn, end - turn), 0.0
             if i and run.events[i - 1][1] == HIT:
                 wall = run.events[i - 1][0]
-                clock = np.array([here[0] if own.forced else 0.0])
+                clock = np.array([span[0] if own.forced else 0.0])
                 impact = Impacts(own, wall, run.states[i : i + 1], clock, run.params[None])
                 hits.append((begin / speed + shift, float(impact.speeds[0]), float(impact.impulses[0])))
                 lost = float(impact.losses[0])
-            sizes = np.abs(farthest(own, run.modes[i], run.states[i], *here, run.params)).max(axis=0)
+            sizes = np.abs(farthest(own, run.modes[i], run.states[i], *span, run.params)).max(axis=0)
             largest = np.maximum(largest, sizes[: machine.size])
             rubbed = (
-                friction_work(own, run.modes[i], run.states[i], *here, run.params)
-                if known and own.equations.limit
+                friction_work(own, run.modes[i], run.states[i], *span, run.params)
+                if has_energy and own.equations.limit
                 else 0.0
             )
             taken.append((begin / speed + shift, lost, 0.0))
             taken.append((end / speed + shift, 0.0, rubbed))
     time, table = np.concatenate(times), np.concatenate(states)
     impacts = np.array(hits).reshape(-1, 3)
-    parts = np.array(taken if known else []).reshape(-1, 3)
+    parts = np.array(taken if has_energy else []).reshape(-1, 3)
     count = max(1, round(float(legs[-1][1].finish - legs[-1][1].clocks[0]) / TWO_PI)) if machine.forced else 0
     last = len(times[-1])
     calm = {
@@ -191,9 +191,9 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
         dict(zip(machine.states, largest.tolist())),
         impacts[:, 0],
         impacts[:, 1],
-        impacts[:, 2] if known else np.zeros(0),
+        impacts[:, 2] if has_energy else np.zeros(0),
         calm,
-        np.concatenate(energy) if known else None,
+        np.concatenate(energy) if has_energy else None,
         parts[:, 0],
         np.cumsum(parts[:, 1]),
         np.cumsum(parts[:, 2]),

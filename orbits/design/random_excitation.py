@@ -176,19 +176,19 @@ def random_base(
     passive = {name: transfer(omega, rate, mass) for name, mass in (("bare", 0.0), ("tuned", eps))}
 
     def answer(drawn: np.ndarray, signal: np.ndarray) -> tuple[Numbers, Lines]:
-        seen = recorded(model, params, times, signal[places])
-        inner = (len(seen.times) - 1) // (warm + count)
+        simulated = recorded(model, params, times, signal[places])
+        inner = (len(simulated.times) - 1) // (warm + count)
         first = warm * inner
-        q, w = seen.oscillator[first:-1], seen.relative[first:-1]
+        q, w = simulated.oscillator[first:-1], simulated.relative[first:-1]
         spectra = {"oscillator": np.fft.rfft(q[::inner]) * (2.0 / count)}
         row = {"rms_oscillator": q.var(), "peak_oscillator": np.abs(q).max(), "rms_relative": w.var()}
         for name, response in passive.items():
             spectra[name] = response * drawn
             motion = _signal(spectra[name], count)
             row |= {f"rms_{name}": motion.var(), f"peak_{name}": np.abs(motion).max()}
-        row["impact_rate"] = np.count_nonzero(seen.impact_times >= warm * step) / length
-        row["absorber_power"] = (seen.impacts + seen.friction) / float(seen.times[-1])
-        row["absorber_share"] = seen.absorber_share
+        row["impact_rate"] = np.count_nonzero(simulated.impact_times >= warm * step) / length
+        row["absorber_power"] = (simulated.impacts + simulated.friction) / float(simulated.times[-1])
+        row["absorber_share"] = simulated.absorber_share
         return row, spectra
 
     # the signal is linear between the instants
@@ -253,12 +253,12 @@ def random_page(
                 )
     count, omega = psd.grid(periods)
     length, early = psd.step * count, math.ceil(warm * count)
-    places, kept = np.arange(-early, count) % count, []
+    places, tables = np.arange(-early, count) % count, []
 
     def answer(drawn: np.ndarray, signal: np.ndarray) -> tuple[Numbers, Lines]:
         table, hits = _follow(machine, params, place, signal[places], psd.step, dict(start or {}))
         table = table[early:]
-        kept.append(table)
+        tables.append(table)
         row: dict[str, float] = {}
         for j, name in enumerate(machine.states):
             x = table[:, j]
@@ -270,7 +270,7 @@ def random_page(
 
     # the signal is constant between the instants
     found = _over_records(psd, count, omega, records, seed, np.sinc(omega * psd.step / TWO_PI), answer)
-    return replace(found, samples=dict(zip(machine.states, np.concatenate(kept).T)))
+    return replace(found, samples=dict(zip(machine.states, np.concatenate(tables).T)))
 
 
 def _follow(

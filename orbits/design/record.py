@@ -135,10 +135,10 @@ def recorded(
         acceleration = np.append(acceleration, [0.0, 0.0])
     eps, r = numbers["mass_ratio"], numbers["restitution"]
     steps = np.maximum(np.ceil(np.diff(times) / (0.02 * math.pi)), 1).astype(np.int64)
-    out = np.zeros((int(steps.sum()) + 1, 4))
+    rows = np.zeros((int(steps.sum()) + 1, 4))
     hits, lost = np.zeros(100_000), np.zeros(3)
     rate, pull = eps * numbers["damping"], numbers["friction"] * numbers["gravity"]
-    count = _march(times, acceleration, steps, (rate, eps, pull, r), out, hits, lost)
+    count = _march(times, acceleration, steps, (rate, eps, pull, r), rows, hits, lost)
     if count < 0:
         raise ParameterError(
             f"the machine has more than {MOST_EVENTS} events in a hundredth of its natural period: the record's acceleration "
@@ -146,7 +146,7 @@ def recorded(
         )
     impacts, friction, damper = (float(x) for x in lost)
     return Response(
-        out[:, 0], out[:, 1], out[:, 2], out[:, 3], impacts, friction, damper, hits[:count].copy()
+        rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3], impacts, friction, damper, hits[:count].copy()
     )
 
 
@@ -173,17 +173,17 @@ def _at(state, mode, rate, eps, pull, a0, a1, t):
     return y, yr, x2 + (v2 + (0.5 * push - a1 * t / 6.0) * t) * t, v2 + (push - 0.5 * a1 * t) * t
 
 
-def _watch(state, mode, rate, eps, pull, a0, a1, t, what):
-    """Return the function that vanishes at event `what` after time t: 0, 1 distances to the walls; 2 relative speed; 3, 4 margins of friction while sticking."""
+def _watch(state, mode, rate, eps, pull, a0, a1, t, event):
+    """Return the function that vanishes at event `event` after time t: 0, 1 distances to the walls; 2 relative speed; 3, 4 margins of friction while sticking."""
     x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, t)
-    if what == 0:
+    if event == 0:
         return 1.0 - (x1 - x2)
-    if what == 1:
+    if event == 1:
         return 1.0 + (x1 - x2)
-    if what == 2:
+    if event == 2:
         return mode * (v1 - v2)
     need = -(rate * v1 + x1) / (1.0 + eps)  # x2'' + e'' while stuck: friction force per absorber mass
-    return pull - need if what == 3 else pull + need
+    return pull - need if event == 3 else pull + need
 
 
 class _State(ctypes.Structure):
@@ -201,19 +201,19 @@ def _march(
     acceleration: np.ndarray,
     steps: np.ndarray,
     machine: tuple[float, float, float, float],
-    out: np.ndarray,
+    rows: np.ndarray,
     hits: np.ndarray,
     lost: np.ndarray,
 ) -> int:
     """Do `_march_plainly` with the native core if there is one, in slices, so that an interrupt is handled between calls."""
     if not native():
-        return _march_plainly(times, acceleration, steps, machine, out, hits, lost)
+        return _march_plainly(times, acceleration, steps, machine, rows, hits, lost)
     arrays = [np.ascontiguousarray(x, dtype=float) for x in (times, acceleration)]
     work = function(
         "record_march", WHOLE, POINTER, WHOLE, *[POINTER] * 3, *[NUMBER] * 4, POINTER, POINTER, WHOLE, WHOLE
     )
     state = _State(mode=0 if machine[2] > 0.0 else 1, row=1)
-    out[0, 0] = times[0]
+    rows[0, 0] = times[0]
     more = 1
     while more == 1:
         more = work(
@@ -221,7 +221,7 @@ def _march(
             len(steps),
             *map(address, (*arrays, steps)),
             *machine,
-            address(out),
+            address(rows),
             address(hits),
             len(hits),
             SLICE,
@@ -235,11 +235,11 @@ def _march_plainly(
     acceleration: np.ndarray,
     steps: np.ndarray,
     machine: tuple[float, float, float, float],
-    out: np.ndarray,
+    rows: np.ndarray,
     hits: np.ndarray,
     lost: np.ndarray,
 ) -> int:
-    """Integrate the whole record; fill `out` with rows (time, x1, w, bare x1), `hits` with times of impacts, `lost` with dissipated energies (impacts, friction, damping).
+    """Integrate the whole record; fill `rows` with rows (time, x1, w, bare x1), `hits` with times of impacts, `lost` with dissipated energies (impacts, friction, damping).
 
     While the mode is 0 (both masses move as one), `wall` is +1 or -1 if the absorber lies against the left or right wall, which only pushes, else 0.
     Return the number of impacts, or -1 if one step has more than `MOST_EVENTS` events.
@@ -250,72 +250,72 @@ def _march_plainly(
     mode = 0 if pull > 0.0 else 1
     wall = 0
     row, count = 1, 0
-    out[0, 0] = times[0]
+    rows[0, 0] = times[0]
     for k in range(steps.size):
         span = times[k + 1] - times[k]
         a1 = (acceleration[k + 1] - acceleration[k]) / span
         for j in range(steps[k]):
             h = span / steps[k]
             a0 = acceleration[k] + a1 * h * j
-            now = times[k] + h * j
+            time = times[k] + h * j
             bare, bare_rate = _drift(bare, bare_rate, 1.0, rate, -a0, -a1, h)
             left, tries = h, 0
             while left > 0.0:
                 tries += 1
                 if tries > MOST_EVENTS:
                     return -1
-                first, which = left, -1
+                first, met = left, -1
                 lowest = 3 if mode == 0 else 0
-                for what in range(lowest, 5 if mode == 0 else (3 if pull > 0.0 else 2)):
-                    if mode == 0 and ((what == 3 and wall == 1) or (what == 4 and wall == -1)):
+                for event in range(lowest, 5 if mode == 0 else (3 if pull > 0.0 else 2)):
+                    if mode == 0 and ((event == 3 and wall == 1) or (event == 4 and wall == -1)):
                         continue  # the wall supports the absorber on this side
-                    if _watch(state, mode, rate, eps, pull, a0, a1, first, what) >= 0.0:
+                    if _watch(state, mode, rate, eps, pull, a0, a1, first, event) >= 0.0:
                         continue
                     low, high = 0.0, first
                     while high - low > REPLAYING.rounding * (1.0 + first):
                         middle = 0.5 * (low + high)
                         if middle <= low or middle >= high:
                             break
-                        if _watch(state, mode, rate, eps, pull, a0, a1, middle, what) >= 0.0:
+                        if _watch(state, mode, rate, eps, pull, a0, a1, middle, event) >= 0.0:
                             low = middle
                         else:
                             high = middle
-                    first, which = high, what
+                    first, met = high, event
                 x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, first)
                 lost[2] += rate * 0.5 * (state[1] * state[1] + v1 * v1) * first
                 if mode != 0:
                     lost[1] += eps * pull * abs((x1 - x2) - (state[0] - state[2]))
                 a0 += a1 * first
                 left -= first
-                now += first
-                if which == 0 or which == 1:
+                time += first
+                if met == 0 or met == 1:
                     w_rate, v_rate = v1 - v2, v1 + eps * v2
                     lost[0] += 0.5 * eps / (1.0 + eps) * (1.0 - r * r) * w_rate * w_rate
                     if count < hits.size:
-                        hits[count] = now
+                        hits[count] = time
                         count += 1
                     after = -r * w_rate
                     v2 = (v_rate - after) / (1.0 + eps)
                     v1 = v2 + after
-                    x2 = x1 - (1.0 if which == 0 else -1.0)
+                    x2 = x1 - (1.0 if met == 0 else -1.0)
                     mode = 1 if after > 0.0 else -1
-                    side = 1 if which == 0 else -1
+                    side = 1 if met == 0 else -1
                     need = -(rate * v1 + x1) / (1.0 + eps)
                     if abs(after) < EVENTS.touch and side * need > -pull:
                         v2 = v_rate / (1.0 + eps)
                         v1 = v2
                         mode, wall = 0, side
-                elif which == 2:
+                elif met == 2:
                     need = -(rate * v1 + x1) / (1.0 + eps)
                     v2 = v1
                     mode, wall = (0 if abs(need) <= pull else (1 if need > 0.0 else -1)), 0
-                elif which >= 3:
-                    mode, wall = (1 if which == 3 else -1), 0
+                elif met >= 3:
+                    mode, wall = (1 if met == 3 else -1), 0
                 state = (x1, v1, x2, v2)
-            out[row, 0] = times[k] + h * (j + 1)
-            out[row, 1] = state[0]
-            out[row, 2] = state[0] - state[2]
-            out[row, 3] = bare
+            rows[row, 0] = times[k] + h * (j + 1)
+            rows[row, 1] = state[0]
+            rows[row, 2] = state[0] - state[2]
+            rows[row, 3] = bare
             row += 1
     return count
 
@@ -334,8 +334,8 @@ def settled(times: np.ndarray, motion: np.ndarray, periods: int) -> float:
     """
     sizes = np.array([np.abs(part).max() for part in np.array_split(motion, periods)])
     last = sizes[-max(1, periods // 4) :]
-    off = np.abs(sizes - last.mean()) > BAND * last.mean()
-    if off[-len(last) :].any():
+    outside = np.abs(sizes - last.mean()) > BAND * last.mean()
+    if outside[-len(last) :].any():
         return math.nan
-    first = int(np.flatnonzero(off)[-1]) + 1 if off.any() else 0
+    first = int(np.flatnonzero(outside)[-1]) + 1 if outside.any() else 0
     return float(times[-1] * first / periods)

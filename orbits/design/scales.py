@@ -259,6 +259,6 @@ def _checked(name: str, value: object, unit: str, limits: Limits = POSITIVE) -> 
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ParameterError(f"{name} = {value!r} is no finite number; give one")
     if value not in limits:
-        shown = f"{value:g} {unit}".rstrip()
-        raise ParameterError(f"{name} = {shown} is out of range; give a number {limits.text}")
+        text = f"{value:g} {unit}".rstrip()
+        raise ParameterError(f"{name} = {text} is out of range; give a number {limits.text}")
     return float(value)

@@ -101,10 +101,10 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
     decay = np.exp(-rate * t)
     q = decay * (np.cos(fast * t) + rate / fast * np.sin(fast * t))
     speed = -decay * np.sin(fast * t) / fast
-    gone = -math.log(1.0 - NINE_TENTHS) / (2.0 * rate) if rate > 0.0 else math.nan
+    bare_time = -math.log(1.0 - NINE_TENTHS) / (2.0 * rate) if rate > 0.0 else math.nan
     impacts, friction, damper = (float(x) for x in parts)
-    when = _when(t, e, 1.0 - NINE_TENTHS)
-    return Decay(t, e, q * q + speed * speed, impacts, friction, damper, when, gone)
+    decay_time = _when(t, e, 1.0 - NINE_TENTHS)
+    return Decay(t, e, q * q + speed * speed, impacts, friction, damper, decay_time, bare_time)
 
 
 def taken_share(model: Model, params: np.ndarray, displacement: float, time: float) -> float:
@@ -224,13 +224,13 @@ def start_up(
             run_up,
         )
     run = simulate(model, {"q1": 0.0, "q2": 0.0}, periods=float(periods), events=None, **numbers)
-    seen, balance = run.sample(per_period=PER_PERIOD), run.balance()
-    times = seen.phase / omega
+    samples, balance = run.sample(per_period=PER_PERIOD), run.balance()
+    times = samples.phase / omega
     bare = _bare(times, numbers, omega)
     hits = run.codes < 2
     return StartUp(
-        times, seen.cavity, seen.w, bare, run.phases[hits] / omega, np.abs(run.rows[hits, 3]),
-        balance.impacts, balance.friction, balance.damping, settled(times, seen.cavity, periods), settled(times, bare, periods),
+        times, samples.cavity, samples.w, bare, run.phases[hits] / omega, np.abs(run.rows[hits, 3]),
+        balance.impacts, balance.friction, balance.damping, settled(times, samples.cavity, periods), settled(times, bare, periods),
     )  # fmt: skip
 
 

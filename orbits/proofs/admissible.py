@@ -139,24 +139,24 @@ def _vanishes(condition: Condition, zero: Zero) -> bool:
 
 
 def _at_event(
-    motif: Motif, i: int, here: Motion, node: Sequence[arb], machine: Flights
+    motif: Motif, i: int, motion: Motion, node: Sequence[arb], machine: Flights
 ) -> Iterator[Condition]:
     """Yield the inequalities at event i."""
     letter = motif.events[i]
     if letter in WALLS:
         # w'- = -w'+/r: the absorber approached the wall before if it leaves it after
-        yield Condition("approach", i, -WALLS[letter] * here.w1)
+        yield Condition("approach", i, -WALLS[letter] * motion.w1)
         return
     for side in (1, -1):
         yield Condition("wall", i, machine.room[side] - side * node[1], side=side)
     mode = motif.modes[i]
     if letter == "t":
-        yield Condition("turn", i, mode * here.push - machine.limit[mode])
+        yield Condition("turn", i, mode * motion.push - machine.limit[mode])
     elif letter == "s":
         for side in (1, -1):
-            yield Condition("stick", i, machine.limit[side] - side * here.push, side=side)
+            yield Condition("stick", i, machine.limit[side] - side * motion.push, side=side)
     else:
-        yield Condition("slip", i, mode * here.push1)
+        yield Condition("slip", i, mode * motion.push1)
 
 
 def _in_flight(

@@ -120,10 +120,10 @@ def _text(integer: int, exponent: int) -> str:
     sign, size = ("-" if integer < 0 else ""), str(abs(integer))
     if integer == 0:
         return "0"
-    shown = size.rstrip("0")
-    exponent += len(size) - len(shown)
+    digits = size.rstrip("0")
+    exponent += len(size) - len(digits)
     if -400 <= exponent <= 0:
-        whole = shown.rjust(1 - exponent, "0")
+        whole = digits.rjust(1 - exponent, "0")
         cut = len(whole) + exponent
         return sign + whole[:cut] + ("." + whole[cut:] if exponent else "")
-    return f"{sign}{shown}e{exponent}"
+    return f"{sign}{digits}e{exponent}"

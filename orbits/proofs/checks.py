@@ -66,10 +66,10 @@ def require_mirror(
 
 def mirrored(given: Mapping[str, Given], varying: Varying | None = None) -> bool:
     """Whether the machine is symmetric, so that the mirror image of a motion is a motion: level cavity, equal restitutions, equal frictions."""
-    told = {**given, **(varying.numbers if varying else {})}
-    pairs = [(f"{name}_left", f"{name}_right") for name in SIDED if f"{name}_left" in told]
-    level = Decimal(str(told.get("slope", "0"))) == 0
-    return level and all(told[a] == told[b] and not isinstance(given.get(a), tuple) for a, b in pairs)
+    numbers = {**given, **(varying.numbers if varying else {})}
+    pairs = [(f"{name}_left", f"{name}_right") for name in SIDED if f"{name}_left" in numbers]
+    level = Decimal(str(numbers.get("slope", "0"))) == 0
+    return level and all(numbers[a] == numbers[b] and not isinstance(given.get(a), tuple) for a, b in pairs)
 
 
 def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | None = None) -> None:

@@ -79,7 +79,7 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
         running.append([*[p + q for p, q in zip(A, D)], *tail] if length == 1 else [*D, *nothing, *A, *tail])
     for own, tail in borders.get(0, []):
         running.append([*own, *tail] if length == 1 else [*nothing, *nothing, *own, *tail])
-    kept: list[list[list[Any]]] = []
+    pivot_rows: list[list[list[Any]]] = []
     for i in range(1, length):
         rows = running
         for row in range(k):
@@ -87,14 +87,14 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
             middle = [*nothing, *D] if i == last else [*D, *nothing]
             rows.append([*system.A[i][row], *middle, *system.E[i][row], system.b[i][row]])
         rows += [[*own, *nothing, *nothing, *tail] for own, tail in borders.get(i, [])]
-        kept.append(_eliminate(rows, k))
+        pivot_rows.append(_eliminate(rows, k))
         running = [row[2 * k :] if i == last else [*row[k : 2 * k], *nothing, *row[2 * k :]] for row in rows]
     pivots = _eliminate(running, k + m)
     solution = _back(pivots, k + m, [])
     head, extra = solution[:k], solution[k:]
     nodes: list[list[Any]] = [head]
     following = nothing
-    for pivots in reversed(kept):
+    for pivots in reversed(pivot_rows):
         following = _back(pivots, k, [*following, *head, *extra])
         nodes.insert(1, following)
     return nodes, extra
@@ -121,8 +121,8 @@ def _eliminate(rows: list[list[Any]], count: int) -> list[list[Any]]:
     return pivots
 
 
-def _back(pivots: list[list[Any]], count: int, known: list[Any]) -> list[Any]:
-    """Solve `count` pivot rows by back substitution; the `known` values are those of all later unknowns."""
+def _back(pivots: list[list[Any]], count: int, later: list[Any]) -> list[Any]:
+    """Solve `count` pivot rows by back substitution; the `later` values are those of all later unknowns."""
     result: list[Any] = [0] * count
     for column in reversed(range(count)):
         row = pivots[column]
@@ -130,7 +130,7 @@ def _back(pivots: list[list[Any]], count: int, known: list[Any]) -> list[Any]:
         for j in range(column + 1, count):
             if not _zero(row[j]):
                 value = value - row[j] * result[j]
-        for j, number in enumerate(known, start=count):
+        for j, number in enumerate(later, start=count):
             if not _zero(row[j]) and not _zero(number):
                 value = value - row[j] * number
         result[column] = value / row[column]

@@ -147,9 +147,9 @@ class Flights:
             if mode == 0:
                 push = whole * q2 + self.bias
                 return Motion(w0, 0, 0, 0, push, whole * q3, whole * q4, v0 + whole * moved, whole * q1)
-            way, fall, push = (q2r + slide * t / 2) * t, q2r + slide * t, q2 + eps * slide + self.bias
-            v, rate = v0 + moved + eps * way, q1 + eps * fall
-            return Motion(w0 + moved - way, q1 - fall, q2 - slide, q3, push, q3, q4, v, rate)
+            slid, fall, push = (q2r + slide * t / 2) * t, q2r + slide * t, q2 + eps * slide + self.bias
+            v, rate = v0 + moved + eps * slid, q1 + eps * fall
+            return Motion(w0 + moved - slid, q1 - fall, q2 - slide, q3, push, q3, q4, v, rate)
 
         return flight
 

@@ -54,8 +54,8 @@ def merged(
         return None
     if 2 * len(pairs) == len(motif) and all(_pair(motif, nodes, i) == "us" for i in pairs):
         return replace(motif, events=(), modes=(), periods=1, half=False), nodes[:0], ("hold", 0)
-    mine = next(i for i in pairs if event in (i, (i + 1) % len(motif)))
-    motif, nodes, i = _inwards(motif, nodes, mine, room)
+    first = next(i for i in pairs if event in (i, (i + 1) % len(motif)))
+    motif, nodes, i = _inwards(motif, nodes, first, room)
     if i + 1 >= len(motif) or i == 0:
         return None
     kind = _pair(motif, nodes, i)

@@ -45,8 +45,8 @@ class Obstacle(Exception):
 
     def __str__(self) -> str:
         at = "" if self.event is None else f" at event {self.event}"
-        why = f" ({self.detail})" if self.detail else ""
-        return f"{self.step.value}{at} was not proved{why}; {self.remedy.value}"
+        reason = f" ({self.detail})" if self.detail else ""
+        return f"{self.step.value}{at} was not proved{reason}; {self.remedy.value}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the obstacle as a dict for JSON."""

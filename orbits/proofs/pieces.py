@@ -180,7 +180,9 @@ def prove_piece(
         cover.reached,
         len(cover.tiles),
         max((tile.radius for tile in cover.tiles), default=None),
-        tuple(end.kind if end and met else None for end, met in zip(ends, (bool(first), cover.arrived))),
+        tuple(
+            end.kind if end and reached else None for end, reached in zip(ends, (bool(first), cover.arrived))
+        ),
         real,
         steady,
         (obstacle,) if obstacle else (),
@@ -247,14 +249,14 @@ class _Cover:
                 width = min(width, GRADE * (place - begin))
             if last:
                 width = min(width, max(GRADE * (end - place), 1.03 * (float(goal) - place)))
-            made = self._next(at, box, width, 2 * least, goal, last)
-            if isinstance(made, Obstacle):
+            tile = self._next(at, box, width, 2 * least, goal, last)
+            if isinstance(tile, Obstacle):
                 if width < least:
                     self.reached = (start, at)
-                    return made
+                    return tile
                 width /= 2
                 continue
-            at, box = made
+            at, box = tile
             width *= 1.6
         self.reached = (start, at)
         if last:
@@ -275,8 +277,8 @@ class _Cover:
         tile is narrower than `least`.
         """
         family = self.family
-        where = f"{family.varying.name} = {float(at):.6g}"
-        smaller = Obstacle(Step.PIECE, Remedy.SMALLER, detail=where)
+        place = f"{family.varying.name} = {float(at):.6g}"
+        smaller = Obstacle(Step.PIECE, Remedy.SMALLER, detail=place)
         # the tile begins slightly to the left of `at`, so that the orbit lies inside
         center = repr(float(at) + 0.49 * width)
         half = f"{width / 2:.6g}"
@@ -292,7 +294,7 @@ class _Cover:
             verdict, tile = self._judged(tile)
             if self.verdict is not None and verdict != self.verdict:
                 step = Step.STABILITY if verdict[0] == self.verdict[0] else Step.ADMISSIBILITY
-                return Obstacle(step, Remedy.SMALLER, detail=where)
+                return Obstacle(step, Remedy.SMALLER, detail=place)
             if None in verdict and self.verdict is None and width > least:
                 return smaller
             reached = repr(float(center) + 0.499 * width)

@@ -150,15 +150,15 @@ class Proof:
                 "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
             )
         motif = self.motif
-        alone = orbit_box(motif, self.box, basis=self.basis) if len(motif) else resting_box(motif)
-        boxes = self.chain or [alone]
+        entry = orbit_box(motif, self.box, basis=self.basis) if len(motif) else resting_box(motif)
+        boxes = self.chain or [entry]
         return certificate(motif, self.parameters, self.varying, boxes, self.real, self.stable, self.bits)
 
     def __str__(self) -> str:
         word = spelling(self.motif, self.parameters)
-        what = "the orbit" if self.kind == "orbit" else f"the {self.kind}"
+        subject = "the orbit" if self.kind == "orbit" else f"the {self.kind}"
         if not self.existence:
-            lines = [f"{what} of {word}: existence not proved"]
+            lines = [f"{subject} of {word}: existence not proved"]
         else:
             facts = [f"exists, one and only one within {self.radius:.2g}"]
             if self.value is not None:
@@ -167,7 +167,7 @@ class Proof:
             facts.append(SAYS["real"][self.real])
             if self.kind == "orbit":
                 facts.append(SAYS["stable"][self.stable])
-            lines = [f"{what} of {word}: " + ", ".join(facts)]
+            lines = [f"{subject} of {word}: " + ", ".join(facts)]
         if self.broken is not None:
             lines.append(f"  the margin {self.broken[0]!r} of event {self.broken[1]} is negative")
         return said(lines, self.obstacles)

@@ -111,9 +111,9 @@ def prove_orbit(
         box = enclose(system, z, [], at)
         balls, _ = box.balls()
         reality = examine(motif, p, balls)
-        steady, why = stable(system, balls)
+        steady, obstacle = stable(system, balls)
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
-        obstacles = (*reality.obstacles(), *([why] if why else []))
+        obstacles = (*reality.obstacles(), *([obstacle] if obstacle else []))
         return replace(
             proof,
             box=box,
@@ -178,12 +178,12 @@ def prove_special(
 
     def attempt(at: int) -> Proof:
         family = Family(motif, {name: ball(number) for name, number in given.items()}, varying)
-        here = family.numbers(ball(value))
-        check_parameters(motif, here)
+        numbers = family.numbers(ball(value))
+        check_parameters(motif, numbers)
         if not len(motif):
             return _slip(proof, family, value, at)
         x = as_balls(nodes)
-        vanishing = vanishing_margin(motif, here, x, *margin) if margin else None
+        vanishing = vanishing_margin(motif, numbers, x, *margin) if margin else None
         system, z, e, turn = _defining(kind, family, x, value, vanishing)
         z, e = _refined(system, nodes, e, at, z)
         box = enclose(system, z, e, at)
@@ -239,13 +239,13 @@ def _defining(
     kind: str, family: Family, x: list[list[arb]], value: float, vanishing: Vanishing | None
 ) -> tuple[System, list[list[arb]], list[arb], Normal | None]:
     """Return the defining system, start values of its unknowns (nodes, further ones), and the normalised component of the eigenvector."""
-    motif, here = family.motif, family.numbers(ball(value))
+    motif, numbers = family.motif, family.numbers(ball(value))
     if vanishing is not None:
         extras = [ball(value)]
         if vanishing.inside:
-            extras.append(touching_phase(motif, here, x, vanishing))
+            extras.append(touching_phase(motif, numbers, x, vanishing))
         return AtBorder(family, vanishing), x, extras, None
-    factors = maps_of(motif, here, x)
+    factors = maps_of(motif, numbers, x)
     if kind == "neimark-sacker":
         phi, normal, angle = eigenpair(factors)
         system: System = AtPair(family, normal)

@@ -177,9 +177,9 @@ class AtBorder(AtParameter):
         else:
             self.borders = ((i, self._row(0)),)
 
-    def _row(self, which: int) -> Callable[[Row, Row], Any]:
+    def _row(self, index: int) -> Callable[[Row, Row], Any]:
         def row(x: Row, extras: Row) -> Number | None:
-            return self._margin(x, extras)[which]
+            return self._margin(x, extras)[index]
 
         return row
 
@@ -260,10 +260,10 @@ def vanishing_margin(motif: Motif, p: Mapping[str, arb], nodes: Nodes, name: str
     if name == "duration":
         raise Obstacle(Step.EXISTENCE, Remedy.OTHER_WORD, event, "a flight of no duration")
     if name in ("hold", "reversal"):
-        both = [Vanishing(name, event, side) for side in (1, -1)]
-        least = [_least(motif, p, nodes, vanishing) for vanishing in both]
-        found = [(pair[0], vanishing) for pair, vanishing in zip(least, both) if pair is not None]
-        return min(found, key=lambda pair: pair[0])[1] if found else both[0]
+        candidates = [Vanishing(name, event, side) for side in (1, -1)]
+        least = [_least(motif, p, nodes, vanishing) for vanishing in candidates]
+        found = [(pair[0], vanishing) for pair, vanishing in zip(least, candidates) if pair is not None]
+        return min(found, key=lambda pair: pair[0])[1] if found else candidates[0]
     if name in ("turn", "stick"):
         side = 1 if flight(nodes[event][0]).push > 0 else -1
     elif name == "wall":

@@ -82,8 +82,8 @@ def away_from_one(system: System, nodes: Nodes) -> bool:
     for factor in factors[1:]:
         product = factor * product
     one = diagonal(size)
-    both = [(one - product).det(), (one + product).det()]
-    return all(float(det.rad()) < PROVING.rough * abs(float(det.mid())) for det in both)
+    determinants = [(one - product).det(), (one + product).det()]
+    return all(float(det.rad()) < PROVING.rough * abs(float(det.mid())) for det in determinants)
 
 
 def _definite(matrix: arb_mat) -> bool:

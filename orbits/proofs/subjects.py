@@ -181,12 +181,12 @@ def of_branch(
     )
     turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
     cuts = sorted({0, len(values) - 1, *(int(i) for i in turns), *(int(i) for i in marks)})
-    known: dict[int, Proof | None] = {}
+    proofs: dict[int, Proof | None] = {}
 
     def point(place: int) -> Proof | None:
-        if place not in known:
-            known[place] = _joinable(problem, motif, (special or {}).get(place))
-        return known[place]
+        if place not in proofs:
+            proofs[place] = _joinable(problem, motif, (special or {}).get(place))
+        return proofs[place]
 
     def plain(place: int) -> bool:
         found = (special or {}).get(place)

@@ -253,11 +253,11 @@ def crossing(
         center, half = texts(value.mid(), DIGITS)[0], f"{float(APART[0]) * WIDTH:.3g}"
         low, high = (_shifted(center, sign, APART[0]) for sign in (-1, 1))
         return [resting_box(motif, low), resting_box(motif, center, half), resting_box(motif, high)]
-    for apart in APART if turn is None else TURN:
+    for distance in APART if turn is None else TURN:
         try:
-            return _chain(family, z, value, bits, turn, apart, pair)
+            return _chain(family, z, value, bits, turn, distance, pair)
         except Obstacle as obstacle:
-            if apart in (APART[-1], TURN[-1]):
+            if distance in (APART[-1], TURN[-1]):
                 raise obstacle from None
     raise AssertionError("no distance to try")
 
@@ -268,28 +268,28 @@ def _chain(
     value: arb,
     bits: int,
     turn: Normal | None,
-    apart: str,
+    distance: str,
     pair: bool,
 ) -> list[Entry]:
-    """Do `crossing` with orbits at the distance `apart` from the point."""
+    """Do `crossing` with orbits at the distance `distance` from the point."""
     n = family.motif.node
     nodes = [list(node[:n]) for node in z]
     center = texts(value.mid(), DIGITS)[0]
     if turn is None:
-        ends = [_shifted(center, sign, apart) for sign in (-1, 1)]
+        ends = [_shifted(center, sign, distance) for sign in (-1, 1)]
         along, starts = Along(family, None, ball(center)), [nodes, nodes]
     else:
         place = turn.block, turn.component
         center = texts(nodes[place[0]][place[1]].mid(), DIGITS)[0]
-        along = Along(family, place, ball(_shifted(center, 1, apart)))
+        along = Along(family, place, ball(_shifted(center, 1, distance)))
         starts = [
-            [[a + b * ball(apart) * sign for a, b in zip(node[:n], node[n:])] for node in z]
+            [[a + b * ball(distance) * sign for a, b in zip(node[:n], node[n:])] for node in z]
             for sign in (-1, 1)
         ]
-        _, (there,) = refine(along, starts[1], [value], bits)
-        ends = [texts(there.mid(), DIGITS)[0]] * 2
+        _, (solution,) = refine(along, starts[1], [value], bits)
+        ends = [texts(solution.mid(), DIGITS)[0]] * 2
         along.at = ball(center)
-    tile = lay(along, center, f"{float(apart) * WIDTH:.3g}", nodes, value)
+    tile = lay(along, center, f"{float(distance) * WIDTH:.3g}", nodes, value)
     if tile is None:
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
     if pair and not away_from_one(family.system(tile.values()), tile.balls()):

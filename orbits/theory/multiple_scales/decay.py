@@ -19,13 +19,13 @@ from .backbone import coefficients
 from .flow import SlowFlow
 
 
-def _rise(flow: SlowFlow, amplitude: ArrayLike, what: str) -> NDArray:
-    """Return ``y = sqrt(C^2 - C_min^2)``; raise a ValueError that names `what` if an amplitude lies below ``C_min``."""
+def _rise(flow: SlowFlow, amplitude: ArrayLike, name: str) -> NDArray:
+    """Return ``y = sqrt(C^2 - C_min^2)``; raise a ValueError that names `name` if an amplitude lies below ``C_min``."""
     low = float(flow.activation.amplitude)
     squared = np.asarray(amplitude, dtype=float) ** 2 - low**2
     if np.any(squared < -THEORY.rounding):
         raise ValueError(
-            f"{what} = {float(np.min(amplitude))!r} lies below the activation threshold C_min = {low:.6g}; "
+            f"{name} = {float(np.min(amplitude))!r} lies below the activation threshold C_min = {low:.6g}; "
             "the absorber does not stay on the impacting manifold there."
         )
     return np.sqrt(np.maximum(squared, 0.0))
