@@ -343,9 +343,9 @@ class Simulator(Protocol[ModelOf, Run]):
         return None
 
     def settle_longer(
-        self, batch: Batch, here: np.ndarray, longest: int, periods: float, workers: int | None
+        self, batch: Batch, chosen: np.ndarray, longest: int, periods: float, workers: int | None
     ) -> None:
-        """Run the motions `here` (bool array (n,)) of a batch, which have not recurred, for up to `periods` more; the batch is changed in place."""
+        """Run the motions `chosen` (bool array (n,)) of a batch, which have not recurred, for up to `periods` more; the batch is changed in place."""
 
     def growth(self) -> tuple[float, float]:
         """Return the largest Lyapunov exponent per forcing period, and its standard error."""

@@ -189,5 +189,5 @@ class Trajectory(ABC, Generic[ModelOf]):
     @cached_property
     def labels(self) -> np.ndarray:
         """One number for each event, the same for equal events, int array (m,)."""
-        known: dict[Hashable, int] = {}
-        return np.array([known.setdefault(event, len(known)) for event in self.occurrences], dtype=int)
+        numbers: dict[Hashable, int] = {}
+        return np.array([numbers.setdefault(event, len(numbers)) for event in self.occurrences], dtype=int)

@@ -33,15 +33,15 @@ def engine() -> ModuleType:
     asked = os.environ.get("CONTVINES_PAGES", "")
     if asked and asked not in MODULES:
         raise EngineMissing(f"CONTVINES_PAGES={asked}: say {' or '.join(MODULES)}, or leave it out")
-    there = find_spec("heyoka") is not None
-    if asked == "heyoka" and not there:
+    installed = find_spec("heyoka") is not None
+    if asked == "heyoka" and not installed:
         raise EngineMissing(
             f"CONTVINES_PAGES=heyoka, which is not installed: {HOW.format(pip_install('machines'))}"
         )
-    if not (asked or there):
+    if not (asked or installed):
         print(
             f"heyoka is not installed: SciPy integrates the motions, about fifty times slower; {HOW.format(pip_install('machines'))}",
             file=sys.stderr,
         )
-    chosen = asked or ("heyoka" if there else "scipy")
+    chosen = asked or ("heyoka" if installed else "scipy")
     return import_module(f"orbits.integrators.{MODULES[chosen]}")

@@ -46,15 +46,15 @@ def in_order(values: Sequence[Symbol]) -> list[Symbol]:
     done: dict[int, Symbol] = {}
     waiting = list(reversed(values))
     while waiting:
-        here = waiting[-1]
-        if id(here) in done:
+        node = waiting[-1]
+        if id(node) in done:
             waiting.pop()
             continue
-        left = [x for x in here.operands if isinstance(x, Symbol) and id(x) not in done]
+        left = [x for x in node.operands if isinstance(x, Symbol) and id(x) not in done]
         if left:
             waiting += left
         else:
-            done[id(here)] = here
+            done[id(node)] = node
             waiting.pop()
     return list(done.values())
 
@@ -64,19 +64,19 @@ def variables_of(value: Symbol) -> set[str]:
     return {node.operands[0] for node in in_order([value]) if node.operation == "variable"}
 
 
-def derivatives(values: Sequence[Symbol], by: Sequence[Symbol]) -> list[list[Symbol]]:
+def derivatives(values: Sequence[Symbol], variables: Sequence[Symbol]) -> list[list[Symbol]]:
     """Return partial derivatives, ``[i][j]`` of value i by variable j."""
     order = in_order(values)
-    columns = [_slopes(order, one) for one in by]
+    columns = [_slopes(order, one) for one in variables]
     return [[column[id(value)] for column in columns] for value in values]
 
 
-def _slopes(order: Sequence[Symbol], by: Symbol) -> dict[int, Symbol]:
+def _slopes(order: Sequence[Symbol], variable_node: Symbol) -> dict[int, Symbol]:
     zero = constant(0.0)
     slope: dict[int, Symbol] = {}
     for node in order:
         d: Symbol | float = zero
-        if node is by:
+        if node is variable_node:
             d = constant(1.0)
         elif node.operation not in ("variable", "number"):
             parts = [slope[id(x)] for x in node.operands]
@@ -104,14 +104,14 @@ def _rule(node: Symbol, d: Sequence[Symbol]) -> Symbol | float:
     return through if d[1].number == 0.0 else through + node * log(a) * d[1]
 
 
-def replaced(value: Symbol, by: Mapping[str, float | Symbol]) -> Symbol:
+def replaced(value: Symbol, replacements: Mapping[str, float | Symbol]) -> Symbol:
     """Return the expression with numbers or other symbols in place of some variables."""
     places: dict[int, Symbol] = {}
     for node in in_order([value]):
         new = node
-        if node.operation == "variable" and node.operands[0] in by:
-            told = by[node.operands[0]]
-            new = told if isinstance(told, Symbol) else constant(told)
+        if node.operation == "variable" and node.operands[0] in replacements:
+            replacement = replacements[node.operands[0]]
+            new = replacement if isinstance(replacement, Symbol) else constant(replacement)
         elif node.operation not in ("variable", "number"):
             new = rebuilt(node, [places[id(x)] for x in node.operands])
         places[id(node)] = new

@@ -39,18 +39,18 @@ def lowered(layout: Layout, values: Sequence[Symbol]) -> list[Any]:
     """Return heyoka's expressions, with its time and runtime parameters in place of the clock and the numbers."""
     heyoka = _heyoka()
     names = {name: heyoka.par[i] for i, name in enumerate(layout.numbers)} | {layout.clock: heyoka.time}
-    made: dict[int, Any] = {}
+    expressions: dict[int, Any] = {}
     for node in in_order(values):
         if node.operation == "variable":
-            made[id(node)] = names.get(node.operands[0]) or heyoka.expression(node.operands[0])
+            expressions[id(node)] = names.get(node.operands[0]) or heyoka.expression(node.operands[0])
         elif node.operation == "number":
-            made[id(node)] = heyoka.expression(node.operands[0])
+            expressions[id(node)] = heyoka.expression(node.operands[0])
         else:
-            parts = [made[id(x)] for x in node.operands]
-            made[id(node)] = (
+            parts = [expressions[id(x)] for x in node.operands]
+            expressions[id(node)] = (
                 rebuilt(node, parts) if len(parts) == 2 else getattr(heyoka, node.operation)(*parts)
             )
-    return [made[id(value)] for value in values]
+    return [expressions[id(value)] for value in values]
 
 
 def _variables(layout: Layout) -> list[Any]:
@@ -101,14 +101,14 @@ class _Variations(ABC):
         self._done = heyoka.taylor_outcome.time_limit
 
     @abstractmethod
-    def _made(self, system: Any, how: dict[str, bool]) -> Any: ...
+    def _made(self, system: Any, options: dict[str, bool]) -> Any: ...
 
 
 class Flight(_Variations):
     """A flow with its derivatives, one flight at a time."""
 
-    def _made(self, system: Any, how: dict[str, bool]) -> Any:
-        return _heyoka().taylor_adaptive(system, [0.0] * self.n, **how)
+    def _made(self, system: Any, options: dict[str, bool]) -> Any:
+        return _heyoka().taylor_adaptive(system, [0.0] * self.n, **options)
 
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, out: np.ndarray
@@ -127,8 +127,8 @@ class Flight(_Variations):
 class Flights(_Variations):
     """A flow with its derivatives, `LANES` flights at a time in the processor's vectors; each flight has its own steps."""
 
-    def _made(self, system: Any, how: dict[str, bool]) -> Any:
-        return _heyoka().taylor_adaptive_batch(system.sys, np.tile(self._begin[:, None], LANES), **how)
+    def _made(self, system: Any, options: dict[str, bool]) -> Any:
+        return _heyoka().taylor_adaptive_batch(system.sys, np.tile(self._begin[:, None], LANES), **options)
 
     def __call__(
         self, states: np.ndarray, begin: np.ndarray, end: np.ndarray, numbers: np.ndarray, out: np.ndarray

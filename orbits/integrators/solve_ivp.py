@@ -112,12 +112,12 @@ class Flight:
         n, m = len(rates), len(rates) + len(active)
         asked = (*layout.states, *(layout.numbers[i] for i in active))
         slopes = derivatives(rates, [variable(name) for name in asked])
-        grown = [[variable(f"d_{i}_{j}") for j in range(m)] for i in range(n)]
+        deriv = [[variable(f"d_{i}_{j}") for j in range(m)] for i in range(n)]
         moved = [
-            sum((slopes[i][k] * grown[k][j] for k in range(n)), slopes[i][j] if j >= n else constant(0.0))
+            sum((slopes[i][k] * deriv[k][j] for k in range(n)), slopes[i][j] if j >= n else constant(0.0))
             for i, j in np.ndindex(n, m)
         ]
-        names = (str(d) for row in grown for d in row)
+        names = (str(d) for row in deriv for d in row)
         self._path = _Path(Layout((*layout.states, *names), layout.clock, layout.numbers), [*rates, *moved])
         self._begin = np.eye(n, m).ravel()
 
@@ -149,9 +149,9 @@ class Watch(_Path):
         rows = np.tile(self.nowhere, (len(clocks), 1))
         rows[np.asarray(clocks) <= clocks[0]] = state
         for solver in self.steps(state, float(clocks[0]), float(np.max(clocks)), numbers):
-            here = (clocks > solver.t_old) & (clocks <= solver.t)
-            if here.any():
-                rows[here] = solver.dense_output()(clocks[here]).T
+            inside = (clocks > solver.t_old) & (clocks <= solver.t)
+            if inside.any():
+                rows[inside] = solver.dense_output()(clocks[inside]).T
         return rows
 
 
@@ -162,8 +162,8 @@ class Run(_Path):
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray
     ) -> tuple[float, int | None]:
         """Move `state` on, in place; return the clock and the index of the function that ended the flight (None: end reached; -1: divergence)."""
-        for clock, place, there in self.crossings(state, begin, end, numbers, rising=False):
-            state[:] = there
+        for clock, place, crossing in self.crossings(state, begin, end, numbers, rising=False):
+            state[:] = crossing
             return clock, place
         state[:] = self.final
         return (end, None) if np.isfinite(state).all() else (begin, -1)

@@ -92,11 +92,11 @@ class Model(Varying):
                 f"{cls.__name__} takes its parameters by name, as restitution=0.76, not {values[0]!r} alone"
             )
         own = [entry for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
-        known = [entry.name for entry in own]
+        names = [entry.name for entry in own]
         for name in options:
-            if name not in known:
+            if name not in names:
                 raise TypeError(
-                    f"{cls.__name__} has no parameter {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
+                    f"{cls.__name__} has no parameter {name!r}{did_you_mean(name, names)}; it has {', '.join(names)}"
                 )
         # copies are constructed without options and filled later
         absent = [
@@ -184,10 +184,10 @@ class Model(Varying):
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Measures of its orbits; a peak force only if the contact time is known."""
-        known = (*COMMON, *self.own_measures)
+        names = (*COMMON, *self.own_measures)
         if self.contact_time is None:
-            known = tuple(name for name in known if name != "peak_force")
-        return known + tuple(mean for mean, name in MEANS.items() if name in known)
+            names = tuple(name for name in names if name != "peak_force")
+        return names + tuple(mean for mean, name in MEANS.items() if name in names)
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """Return the machine's fields by name, ready for JSON; `params` only matter to declared machines."""
@@ -243,8 +243,8 @@ class Model(Varying):
         """Return a parameter of the left and of the right side; a parameter without sides is that of both."""
         if f"{name}_left" in cls.parameter_names:
             return cls.column(params, f"{name}_left"), cls.column(params, f"{name}_right")
-        both = cls.column(params, name)
-        return both, both
+        shared = cls.column(params, name)
+        return shared, shared
 
     @classmethod
     def weight(cls, params: np.ndarray) -> Reals:

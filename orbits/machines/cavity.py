@@ -115,23 +115,23 @@ class Cavity(Model):
     )
 
     def _check_together(self) -> None:
-        for both, sides in PAIRS.items():
+        for common, sides in PAIRS.items():
             given = [side for side in sides if getattr(self, side) is not None]
-            if getattr(self, both) is not None and given:
+            if getattr(self, common) is not None and given:
                 raise ParameterError(
-                    f"{both} = {getattr(self, both):g} and {given[0]} = {getattr(self, given[0]):g} are both given: give {both} for "
+                    f"{common} = {getattr(self, common):g} and {given[0]} = {getattr(self, given[0]):g} are both given: give {common} for "
                     f"both sides, or {sides[0]} and {sides[1]}"
                 )
-            if getattr(self, both) is None and len(given) < 2:
+            if getattr(self, common) is None and len(given) < 2:
                 missing = next(side for side in sides if side not in given)
                 raise ParameterError(
-                    f"{missing if given else both} is missing: give {both} for both sides, or {sides[0]} and {sides[1]}"
+                    f"{missing if given else common} is missing: give {common} for both sides, or {sides[0]} and {sides[1]}"
                 )
 
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
         given = dict(values or {})
-        for both, sides in PAIRS.items():
-            shared = given.pop(both, getattr(self, both))
+        for common, sides in PAIRS.items():
+            shared = given.pop(common, getattr(self, common))
             if shared is not None:
                 given = dict.fromkeys(sides, shared) | given
         return super().vector(given)
@@ -141,7 +141,10 @@ class Cavity(Model):
     def _amount_of(self) -> list[str]:
         """Name of the amount behind each number: the common name of both sides if they are given together, else its own name."""
         shared = {
-            side: both for both, sides in PAIRS.items() if getattr(self, both) is not None for side in sides
+            side: common
+            for common, sides in PAIRS.items()
+            if getattr(self, common) is not None
+            for side in sides
         }
         return [shared.get(name, name) for name in self.parameter_names]
 

@@ -50,8 +50,11 @@ _WORKS = {
 }
 
 
-def _energies(told: dict[str, str]) -> dict[str, Measure]:
-    return {name: Measure("energy", f"{what} per period of the orbit") for name, what in told.items()}
+def _energies(descriptions: dict[str, str]) -> dict[str, Measure]:
+    return {
+        name: Measure("energy", f"{description} per period of the orbit")
+        for name, description in descriptions.items()
+    }
 
 
 COMMON = {

@@ -36,9 +36,9 @@ def model_class(name: str) -> type[Model]:
         If there is no machine of this name.
     """
     if name not in PLACES:
-        known = (*NAMES, *PAGES)
+        names = (*NAMES, *PAGES)
         raise ParameterError(
-            f"name = {name!r}: there is no such machine{did_you_mean(name, known)}; choose one of {', '.join(known)}"
+            f"name = {name!r}: there is no such machine{did_you_mean(name, names)}; choose one of {', '.join(names)}"
         )
     module, place = PLACES[name]
     return getattr(importlib.import_module(module), place)

@@ -85,13 +85,13 @@ class NativeStepper(Stepper):
         params = floats(params)
         until = min(float(until), float(state[TURNS]) + STEPPING.forever)
         count, status, room = 0, PAUSED, len(codes)
-        here, numbers = written(state), address(params)
+        place, numbers = written(state), address(params)
         at_codes, at_modes, at_rows = written(codes), written(modes), written(rows)
         width = rows.itemsize * rows.shape[1]
         while status == PAUSED:
             places = at_codes + count, at_modes + count, at_rows + count * width
-            made = self._advance(self.number, here, numbers, until, *places, room - count)
-            more, status = divmod(made, 8)
+            packed = self._advance(self.number, place, numbers, until, *places, room - count)
+            more, status = divmod(packed, 8)
             count += more
         return count, status
 

@@ -108,9 +108,9 @@ class Parameter:
         name = self.name
         if isinstance(value, str) and self.words:
             if value not in self.words:
-                known = ", ".join(f'"{word}"' for word in self.words)
+                choices = ", ".join(f'"{word}"' for word in self.words)
                 raise ParameterError(
-                    f"{name} = {value!r} is unknown; give {known} or a number {self.limits.text}"
+                    f"{name} = {value!r} is unknown; give {choices} or a number {self.limits.text}"
                 )
             return self.words[value]
         try:

@@ -101,8 +101,8 @@ def reduced(
     for count in range(int(np.searchsorted(own, highest, side="right")), size - len(kept)):
         basis = _basis(mass, modes[:, :count], bent, ends)
         small = tuple(basis.T @ matrix @ basis for matrix in matrices)
-        here = np.array([_receptance(small, w, np.arange(len(kept))) for w in places])
-        error = float((np.linalg.norm(here - true, axis=(1, 2)) / scale).max())
+        response = np.array([_receptance(small, w, np.arange(len(kept))) for w in places])
+        error = float((np.linalg.norm(response - true, axis=(1, 2)) / scale).max())
         if error <= accuracy:
             return Reduced(small[0], small[1], small[2], tuple(int(i) for i in kept), size, error, highest)
     return Reduced(mass, damping, stiffness, tuple(range(size)), size, 0.0, highest)
@@ -113,8 +113,8 @@ def _basis(mass: np.ndarray, modes: np.ndarray, bent: np.ndarray, kept: np.ndarr
     rest = bent - modes @ (modes.T @ (mass @ bent))
     span = np.hstack([modes, rest / np.linalg.norm(rest, axis=0)])
     rows = span[kept]
-    still = np.linalg.svd(rows)[2][len(kept) :].T
-    inside = span @ still
+    unmoved = np.linalg.svd(rows)[2][len(kept) :].T
+    inside = span @ unmoved
     return np.hstack(
         [span @ np.linalg.pinv(rows), inside / np.sqrt(np.sum(inside * (mass @ inside), axis=0))]
     )
@@ -147,25 +147,25 @@ def matrix(name: str, given: Given, folder: Path | None = None) -> np.ndarray:
     ParameterError
         If it cannot be read, or is no finite symmetric matrix.
     """
-    where = f"{name} = {given!r}" if isinstance(given, str) else name
+    label = f"{name} = {given!r}" if isinstance(given, str) else name
     try:
         found = np.asarray(_read(name, given, folder) if isinstance(given, str) else given, dtype=float)
     except (TypeError, ValueError) as error:
         raise ParameterError(
-            f"{where}: {error}; give rows of numbers, [[2, -1], [-1, 2]], or a file"
+            f"{label}: {error}; give rows of numbers, [[2, -1], [-1, 2]], or a file"
         ) from None
     except OSError as error:
-        raise ParameterError(f"{where}: cannot be read ({error.strerror or error})") from None
+        raise ParameterError(f"{label}: cannot be read ({error.strerror or error})") from None
     if found.ndim != 2 or found.shape[0] != found.shape[1] or not found.size:
-        raise ParameterError(f"{where}: its shape is {found.shape}; expected a square matrix")
+        raise ParameterError(f"{label}: its shape is {found.shape}; expected a square matrix")
     if len(found) > MOST:
         raise ParameterError(
-            f"{where}: {len(found)} degrees of freedom; at most {MOST} are allowed: reduce it beforehand"
+            f"{label}: {len(found)} degrees of freedom; at most {MOST} are allowed: reduce it beforehand"
         )
     if not np.isfinite(found).all():
-        raise ParameterError(f"{where}: it has entries that are not finite")
+        raise ParameterError(f"{label}: it has entries that are not finite")
     if np.abs(found - found.T).max() > FORMULAS.same * np.abs(found).max():
-        raise ParameterError(f"{where}: it is not symmetric; a structure's matrices are")
+        raise ParameterError(f"{label}: it is not symmetric; a structure's matrices are")
     return 0.5 * (found + found.T)
 
 

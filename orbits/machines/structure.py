@@ -68,9 +68,9 @@ class Structure(Machine):
         """Return everything that `structure_again` needs, ready for JSON: reduced matrices, elements and parameters."""
         small = self.reduction
         matrices = {name: getattr(small, name).tolist() for name in MATRICES}
-        made = vars(small) | matrices | {"kept": list(small.kept), "elements": self.elements}
+        data = vars(small) | matrices | {"kept": list(small.kept), "elements": self.elements}
         values = self.parameters if params is None else self.named(params)
-        return {"name": self.name, "structure": made, **values}
+        return {"name": self.name, "structure": data, **values}
 
     def __reduce__(self) -> tuple[Any, ...]:
         return structure_again, (self.settings(),)
@@ -133,10 +133,10 @@ def structure(
         kind: [_element(kind, k, element, size) for k, element in enumerate(each)]
         for kind, each in given.items()
     }
-    kept = sorted(
+    coordinates = sorted(
         {int(e[end]) - 1 for each in elements.values() for e in each for end in ("at", "to") if e.get(end)}
     )
-    if not kept:
+    if not coordinates:
         raise ParameterError(
             "a structure without forces and contacts does not move: give forces = [{ at = 1, amplitude = 0.1 }]"
         )
@@ -145,7 +145,7 @@ def structure(
             f"frequency = {frequency:g}, accuracy = {accuracy:g}: expected a frequency above 0 and an accuracy from 0 to 1"
         )
     return _made(
-        reduced(matrices[0], matrices[1], matrices[2], kept, highest or MEANT * frequency, accuracy),
+        reduced(matrices[0], matrices[1], matrices[2], coordinates, highest or MEANT * frequency, accuracy),
         elements,
         frequency,
     )
@@ -153,44 +153,44 @@ def structure(
 
 def structure_again(settings: Mapping[str, Any]) -> Structure:
     """Return the structure with these settings."""
-    kept = settings["structure"]
-    m, c, k = (np.array(kept[name]) for name in MATRICES)
-    small = Reduced(m, c, k, tuple(kept["kept"]), kept["size"], kept["error"], kept["highest"])
+    data = settings["structure"]
+    m, c, k = (np.array(data[name]) for name in MATRICES)
+    small = Reduced(m, c, k, tuple(data["kept"]), data["size"], data["error"], data["highest"])
     values = {key: value for key, value in settings.items() if key not in ("name", "structure")}
-    return _made(small, kept["elements"], values.get("frequency", 1.0), values)
+    return _made(small, data["elements"], values.get("frequency", 1.0), values)
 
 
 def _element(kind: str, place: int, given: object, size: int) -> dict[str, float]:
     """Return an element with all its fields, checked."""
-    where, known = f"{kind}s[{place}]", FIELDS[kind]
+    label, fields = f"{kind}s[{place}]", FIELDS[kind]
     if not isinstance(given, Mapping):
-        raise ParameterError(f"{where} = {given!r}: expected fields such as {dict.fromkeys(known, 1.0)}")
+        raise ParameterError(f"{label} = {given!r}: expected fields such as {dict.fromkeys(fields, 1.0)}")
     for name, value in given.items():
-        if name not in known:
+        if name not in fields:
             raise ParameterError(
-                f"{where}: there is no field {name!r}{did_you_mean(name, known)}; a {kind} has {', '.join(known)}"
+                f"{label}: there is no field {name!r}{did_you_mean(name, fields)}; a {kind} has {', '.join(fields)}"
             )
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise ParameterError(f"{where}: {name} = {value!r} is no finite number")
-    for name, default in known.items():
+            raise ParameterError(f"{label}: {name} = {value!r} is no finite number")
+    for name, default in fields.items():
         if default is None and name not in given:
-            raise ParameterError(f"{where}: {name} is missing")
-    found = {name: float(given.get(name, default)) for name, default in known.items()}  # type: ignore[arg-type]
+            raise ParameterError(f"{label}: {name} is missing")
+    found = {name: float(given.get(name, default)) for name, default in fields.items()}  # type: ignore[arg-type]
     for end in ("at", "to"):
         low = 1 if end == "at" else 0
         if end in found and not (found[end] == int(found[end]) and low <= found[end] <= size):
             raise ParameterError(
-                f"{where}: {end} = {found[end]:g} is no degree of freedom; expected {low} to {size}"
+                f"{label}: {end} = {found[end]:g} is no degree of freedom; expected {low} to {size}"
             )
     if found.get("to") == found["at"]:
-        raise ParameterError(f"{where}: at and to are both {found['at']:g}; to = 0 is the ground")
+        raise ParameterError(f"{label}: at and to are both {found['at']:g}; to = 0 is the ground")
     if kind == "wall" and math.isnan(found["restitution"]) == math.isnan(found["stiffness"]):
-        raise ParameterError(f"{where}: give restitution, of a rigid wall, or stiffness, of an elastic one")
+        raise ParameterError(f"{label}: give restitution, of a rigid wall, or stiffness, of an elastic one")
     if kind == "wall" and abs(found["side"]) != 1.0:
-        raise ParameterError(f"{where}: side = {found['side']:g}; expected 1 or -1")
+        raise ParameterError(f"{label}: side = {found['side']:g}; expected 1 or -1")
     for name in ("mass", "stiffness", "clearance", "harmonic"):
         if not (found.get(name, 1.0) > 0.0 or math.isnan(found[name])):
-            raise ParameterError(f"{where}: {name} = {found[name]:g} is out of range; give a number above 0")
+            raise ParameterError(f"{label}: {name} = {found[name]:g} is out of range; give a number above 0")
     return {name: value for name, value in found.items() if not math.isnan(value)}
 
 
@@ -369,7 +369,7 @@ def _made(
                 for field, value in element.items()
                 if field not in FIXED and (field != "loss" or value)
             }
-    made = Structure(
+    machine = Structure(
         name="structure",
         states=space.states,
         parameters={**parameters, **(values or {})},
@@ -378,5 +378,5 @@ def _made(
         contacts=space.contacts(),
         energy=space.energy,
     )
-    made.reduction, made.elements = small, elements
-    return made
+    machine.reduction, machine.elements = small, elements
+    return machine

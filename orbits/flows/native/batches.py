@@ -94,8 +94,8 @@ class Settling(NamedTuple):
             "simulation_settle", WHOLE, WHOLE, WHOLE, WHOLE, POINTER, POINTER, NUMBER, WHOLE, NUMBER, *[POINTER] * 5, NUMBER
         )  # fmt: skip
         results = [written(found[name]) for name in RESULTS]
-        how = address(self.params), self.transient, self.longest, self.tolerance
-        return work(machine, begin, len(states), written(states), *how, *results, WORK)
+        settings = address(self.params), self.transient, self.longest, self.tolerance
+        return work(machine, begin, len(states), written(states), *settings, *results, WORK)
 
     def _one(self, state: np.ndarray, i: int, found: dict[str, np.ndarray]) -> None:
         """Run motion number i in plain Python: the reference of `native/many_starts.hpp`."""
@@ -169,14 +169,14 @@ def growth(engine: Stepper, state: np.ndarray, params: np.ndarray, count: int) -
         until = np.floor(state[TURNS] + state[PSI] / (2.0 * np.pi) + 0.5) + 1.0
         for one in (state, other):
             _follow(engine, one, params, until, room)
-        apart = other[drawn_back] - state[drawn_back]
-        size = math.sqrt(float(apart @ apart))
+        separation = other[drawn_back] - state[drawn_back]
+        size = math.sqrt(float(separation @ separation))
         if size == 0.0:  # both motions stick and have become equal: separate them again
             ratios[k] = SIMULATING.lost
             other[RATE] = state[RATE] + distance
         else:
             ratios[k] = size / distance
-            other[drawn_back] = state[drawn_back] + distance / size * apart
+            other[drawn_back] = state[drawn_back] + distance / size * separation
         other[[PSI, TURNS, LOW]] = state[[PSI, TURNS, LOW]]
         other[W] = min(max(other[W], right), left)
         engine.launch(other, params)
@@ -214,8 +214,8 @@ def settle_all(
 
     def run(block: np.ndarray, transient: float) -> None:
         part, pieces = states[block], {key: column[block] for key, column in found.items()}
-        how = Settling(engine, floats(params), transient, longest, tolerance)
-        how.settle(part, pieces, stopped)
+        settling = Settling(engine, floats(params), transient, longest, tolerance)
+        settling.settle(part, pieces, stopped)
         states[block] = part
         for key, piece in pieces.items():
             found[key][block] = piece

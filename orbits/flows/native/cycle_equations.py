@@ -110,13 +110,13 @@ class NativeEquations(Equations[Model]):
         )  # the second entry of an impact's node is a speed
         sign = 1.0 if self.word.letter(place).contact == LEFT else -1.0
         cavity, slopes = self.model.cavity_speed(node, self.values(p))
-        beside, _ = self.model.cavity_speed(node, self.values(p + near))
-        cavity, beside = cavity / own, beside / own
+        nearby, _ = self.model.cavity_speed(node, self.values(p + near))
+        cavity, nearby = cavity / own, nearby / own
         by_node, push = -sign * slopes * unit / own, np.zeros(n)
         by_node[1] += sign
         push[1] = sign
         return Approach(
-            sign * (float(u[place * n + 1]) - cavity), by_node, -sign * (beside - cavity) / near, push
+            sign * (float(u[place * n + 1]) - cavity), by_node, -sign * (nearby - cavity) / near, push
         )
 
     def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:

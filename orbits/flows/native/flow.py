@@ -207,7 +207,7 @@ class NativeFlow(Flow[Model]):
             if word.frictionless:
                 return None
             at = place - 1 if word.letter(place).kind == SLIP else place
-            return Vanishing(site._replace(place=at, at=at), self._nearer(motion, motion.nodes[at, 1]))
+            return Vanishing(site._replace(place=at, at=at), self._nearest_wall(motion, motion.nodes[at, 1]))
         if (
             word.modes[place] == STUCK
         ):  # the reserve of friction vanishes inside the stick, so the time of the slip jumps
@@ -229,7 +229,7 @@ class NativeFlow(Flow[Model]):
             return None
         left, right = motion.model.walls(motion.params)
         touch = inner[np.argmin(np.minimum(left - path[inner, 0], path[inner, 0] - right))]
-        wall = self._nearer(motion, path[touch, 0])
+        wall = self._nearest_wall(motion, path[touch, 0])
         return Vanishing(site, wall, self._touch(motion, float(ahead[touch]), path[touch]))
 
     def _slowest(self, motion: Motion[Model], place: int) -> tuple[float, np.ndarray]:
@@ -244,14 +244,14 @@ class NativeFlow(Flow[Model]):
             ahead = low + (high - low) / 40.0 * GRID
             k = int((mode * self._flight(motion, place, ahead)[:, 1]).argmin())
             low, high = float(ahead[max(k - 1, 0)]), float(ahead[min(k + 1, 40)])
-        where = 0.5 * (low + high)
-        return self._touch(motion, where, self._flight(motion, place, np.array([where]))[0])
+        clock = 0.5 * (low + high)
+        return self._touch(motion, clock, self._flight(motion, place, np.array([clock]))[0])
 
-    def _touch(self, motion: Motion[Model], ahead: float, here: np.ndarray) -> tuple[float, np.ndarray]:
+    def _touch(self, motion: Motion[Model], ahead: float, row: np.ndarray) -> tuple[float, np.ndarray]:
         """Return clock and node entries, w (, v, v'), of a point in a flight, like a node away from the walls."""
-        return ahead, here[[0, 2, 3]][: motion.nodes.shape[1] - 1]
+        return ahead, row[[0, 2, 3]][: motion.nodes.shape[1] - 1]
 
-    def _nearer(self, motion: Motion[Model], w: float) -> int:
+    def _nearest_wall(self, motion: Motion[Model], w: float) -> int:
         """Return the wall nearer to w."""
         left, right = motion.model.walls(motion.params)
         return LEFT if left - w < w - right else RIGHT
@@ -265,14 +265,14 @@ class NativeFlow(Flow[Model]):
         for row, text, spot in zip(rows, change.events, change.spots):
             hit = letters[text].kind == HIT
             side = (1 if letters[text].contact == LEFT else -1) if hit else 0
-            was = None if spot.node is None else word.letter(spot.node)
-            was_hit = was is not None and was.kind == HIT
-            if hit and not was_hit:
-                here = row if spot.node is None else motion.nodes[spot.node]
-                row[1] = model.cavity_speed(here, motion.params)[0]  # B+ = v' - w'+
+            replaced = None if spot.node is None else word.letter(spot.node)
+            replaces_hit = replaced is not None and replaced.kind == HIT
+            if hit and not replaces_hit:
+                node = row if spot.node is None else motion.nodes[spot.node]
+                row[1] = model.cavity_speed(node, motion.params)[0]  # B+ = v' - w'+
                 row[1] += side * GROWING.first * length * rate
-            elif was is not None and was_hit and not hit:
-                row[1] = model.walls(motion.params)[0 if was.contact == LEFT else 1]
+            elif replaced is not None and replaces_hit and not hit:
+                row[1] = model.walls(motion.params)[0 if replaced.contact == LEFT else 1]
             elif hit_before and not hit:
                 row[1] -= hit_before * 0.1 * GROWING.first**2 * length  # a little off the wall
             hit_before = side

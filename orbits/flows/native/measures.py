@@ -67,11 +67,11 @@ def dimensionless(
     KeyError
         If a name is unknown.
     """
-    known = model.measure_names
+    available = model.measure_names
     for name in wanted:
-        if name not in known:
+        if name not in available:
             raise KeyError(
-                f"measure {name!r} is unknown{way_out(name) or did_you_mean(name, known)}; choose one of {', '.join(known)}"
+                f"measure {name!r} is unknown{way_out(name) or did_you_mean(name, available)}; choose one of {', '.join(available)}"
             )
     if not len(word):
         return {name: _at_rest(model, name, params) for name in wanted}

@@ -224,15 +224,15 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         if ways is None:
             return False
         left, right = self.engine.walls(self.params)
-        places, way = (
+        places, drift = (
             run.nodes[-len(ways) :, 1],
             float(ways[-1]),
         )  # the extreme positions are turns and sticks
-        room = left - places.max() if way > 0.0 else right - places.min()
-        times = math.floor(room / way) - 1
+        room = left - places.max() if drift > 0.0 else right - places.min()
+        times = math.floor(room / drift) - 1
         if times < 1:
             return False
-        self.state[W] += times * way
+        self.state[W] += times * drift
         return True
 
     def push(self) -> None:
@@ -262,12 +262,12 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         return self._settled(states, TRANSIENTS, longest, workers)
 
     def settle_longer(
-        self, batch: Batch, here: np.ndarray, longest: int, periods: float, workers: int | None
+        self, batch: Batch, chosen: np.ndarray, longest: int, periods: float, workers: int | None
     ) -> None:
-        """Run the motions `here` of a batch, which have not recurred, for up to `periods` more."""
-        more = self._settled(batch.states[here], [periods / LOOKS] * LOOKS, longest, workers)
-        for known, new in zip(batch[:6], more[:6]):
-            known[here] = new
+        """Run the motions `chosen` of a batch, which have not recurred, for up to `periods` more."""
+        more = self._settled(batch.states[chosen], [periods / LOOKS] * LOOKS, longest, workers)
+        for earlier, new in zip(batch[:6], more[:6]):
+            earlier[chosen] = new
 
     def _settled(
         self, states: np.ndarray, transients: Sequence[float], longest: int, workers: int | None
@@ -387,16 +387,18 @@ def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: i
     if n < 2 or codes.min() < 2 or codes.max() >= HOLD:
         return None
     for length in range(1, n // 2 + 1):
-        here, before = slice(n - length, n), slice(n - 2 * length, n - length)
-        if not (np.array_equal(codes[here], codes[before]) and np.array_equal(modes[here], modes[before])):
+        latest, before = slice(n - length, n), slice(n - 2 * length, n - length)
+        if not (
+            np.array_equal(codes[latest], codes[before]) and np.array_equal(modes[latest], modes[before])
+        ):
             continue
-        shift = nodes[here, :2] - nodes[before, :2]
+        shift = nodes[latest, :2] - nodes[before, :2]
         periods = round(float(shift[-1, 0]) / TWO_PI)
         if periods > max_period:
             return None
-        way = float(shift[-1, 1])
+        drift = float(shift[-1, 1])
         late = np.abs(shift[:, 0] - TWO_PI * periods).max()
-        uneven = np.abs(shift[:, 1] - way).max()
-        if periods and abs(way) > EVENTS.zero and max(late, uneven) < SIMULATING.steady * abs(way):
+        uneven = np.abs(shift[:, 1] - drift).max()
+        if periods and abs(drift) > EVENTS.zero and max(late, uneven) < SIMULATING.steady * abs(drift):
             return shift[:, 1]
     return None

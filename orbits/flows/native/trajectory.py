@@ -121,11 +121,11 @@ class NativeTrajectory(Trajectory):
         codes, modes, rows = self.codes[part], self.modes[part], self.rows[part]
         nodes = self.machine.nodes_of(self.params, codes, modes, rows)
         speeds = np.abs(rows[:, 3]) / np.prod(model.natural_units(self.params))
-        kept = ~_touches(codes, nodes, speeds)
-        codes, modes = codes[kept], modes[kept]
+        real_events = ~_touches(codes, nodes, speeds)
+        codes, modes = codes[real_events], modes[real_events]
         alphabet = shaken(model.frictionless(self.params))
         word = Word(tuple(LETTERS[code] for code in codes), tuple(map(int, modes)), alphabet)
-        return word, model.at_home(codes, nodes[kept], self.params)
+        return word, model.at_home(codes, nodes[real_events], self.params)
 
     def approaches(self, first: int = 0) -> np.ndarray:
         """Return |w'| just before the impacts from event `first` on."""
@@ -154,8 +154,8 @@ class NativeTrajectory(Trajectory):
 
     def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
         """Return phases, and |q1| at these phases."""
-        seen = self.sample(per_period=per_period)
-        return seen.phase, np.abs(seen.cavity)
+        samples = self.sample(per_period=per_period)
+        return samples.phase, np.abs(samples.cavity)
 
     @cached_property
     def states(self) -> np.ndarray:
@@ -205,10 +205,10 @@ class NativeTrajectory(Trajectory):
         grid = self._grid(per_period)
         marks = np.concatenate([grid, self.phases])
         marks = np.unique(marks[(marks >= grid[0]) & (marks <= grid[-1])])
-        seen = self.sample(marks)
-        speed, _ = self.model.bodies(seen.w_rate, seen.v_rate, self.params)
+        samples = self.sample(marks)
+        speed, _ = self.model.bodies(samples.w_rate, samples.v_rate, self.params)
         turn = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
-        high = np.abs(seen.cavity)
+        high = np.abs(samples.cavity)
         peak = float(high.max())
         steep = np.maximum(np.abs(speed[turn]), np.abs(speed[turn + 1]))
         rise = steep * (marks[turn + 1] - marks[turn])  # largest possible gain of q1 up to the zero of q1'
@@ -217,9 +217,9 @@ class NativeTrajectory(Trajectory):
         before, place = np.zeros(turn.size, dtype=int), np.full(turn.size, np.inf)
         for _ in range(MOST_STEPS if turn.size else 0):  # the Illinois rule, for all zeros together
             last, place = place, np.clip(lo + (hi - lo) * below / (below - above), lo, hi)
-            here = self.sample(place)
-            rate, _ = self.model.bodies(here.w_rate, here.v_rate, self.params)
-            peak = max(peak, float(np.abs(here.cavity).max()))
+            at_zero = self.sample(place)
+            rate, _ = self.model.bodies(at_zero.w_rate, at_zero.v_rate, self.params)
+            peak = max(peak, float(np.abs(at_zero.cavity).max()))
             if np.all((rate == 0.0) | (np.abs(place - last) < SIMULATING.peak)):
                 break
             side = np.where(rate * below > 0.0, 1, -1)

@@ -34,16 +34,16 @@ def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, wo
     """Integrate every flight into `work.flown`; return False if one diverges."""
     numbers, flown = work.numbers, work.flown
     for flight, many, places in data.flight_groups:
-        alone = places
+        singles = places
         if many is not None:
             spare = len(places) % engine().LANES
-            alone = places[-1:] if spare == 1 else places[:0]
-            together = places[: len(places) - len(alone)]
-            found = np.empty((len(together), flown.shape[1]))
-            if not many(nodes[together, 1:], begin[together], end[together], numbers[together], found):
+            singles = places[-1:] if spare == 1 else places[:0]
+            batch = places[: len(places) - len(singles)]
+            found = np.empty((len(batch), flown.shape[1]))
+            if not many(nodes[batch, 1:], begin[batch], end[batch], numbers[batch], found):
                 return False
-            flown[together] = found
-        for i in alone:
+            flown[batch] = found
+        for i in singles:
             if not flight(nodes[i, 1:], float(begin[i]), float(end[i]), numbers[i], flown[i]):
                 return False
     return True
@@ -313,9 +313,9 @@ class PageEquations(Pieces):
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Return the unknowns, shape (N,), from the nodes of the whole cycle; without events, nodes are computed from the first if their number differs."""
         often = self.length * (2 if self.symmetric else 1) // self.periods
-        apart = (
+        spacing = (
             float(np.ptp(nodes[:2, 0])) * often / TWO_PI
         )  # distance of the given nodes relative to that of the unknown nodes
-        if not len(self.word) and self.length > 1 and abs(apart - 1.0) > 0.1:
+        if not len(self.word) and self.length > 1 and abs(spacing - 1.0) > 0.1:
             nodes = strobed(self.model, self.word, self.periods, nodes[0], self.params, often)
         return super().reduce(nodes)

@@ -191,13 +191,13 @@ class PageFlow(Flow[Machine]):
         own_start = len(motion.word) and motion.word.letter(place).contact == contact
         own_end = len(motion.word) and motion.word.letter(place + 1).contact == contact
         best, found = np.inf, (0.0, state, 0)
-        for clock, g, there in candidates:
+        for clock, g, point in candidates:
             share = (clock - begin) / max(length, SMALLEST)
             if (own_start and share < EVENTS.at_end) or (own_end and share > 1.0 - EVENTS.at_end):
                 continue
-            value = abs(values(there[None], np.array([clock]), numbers[None])[0, g])
+            value = abs(values(point[None], np.array([clock]), numbers[None])[0, g])
             if value < best:
-                best, found = value, (clock - begin, np.array(there), guards[g].sign)
+                best, found = value, (clock - begin, np.array(point), guards[g].sign)
         return found
 
 

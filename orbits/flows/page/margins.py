@@ -36,23 +36,23 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
         m, count = len(places), len(guards)
         if not count:
             continue
-        both = values(
+        table_of_ends = values(
             np.concatenate([nodes[places, 1:], work.arrival[places]]),
             np.concatenate([begin[places], end[places]]),
             np.concatenate([work.numbers[places], work.numbers[places]]),
         )
-        at_start, at_end = both[:m, :count], both[m:, :count]
-        rate_start, rate_end = both[:m, count:], both[m:, count:]
+        at_start, at_end = table_of_ends[:m, :count], table_of_ends[m:, :count]
+        rate_start, rate_end = table_of_ends[:m, count:], table_of_ends[m:, count:]
         found: list[tuple[int, int, np.ndarray, float]] = []
         for k, i in enumerate(places):
             first, last = data.letters[i], data.letters[i + 1]
-            told, tells = data.owned[i], data.owned[i + 1]
+            at_begin, at_stop = data.owned[i], data.owned[i + 1]
             span = end[i] - begin[i]
             for g, guard in enumerate(guards):
                 j = guard.contact
-                if j not in told:
+                if j not in at_begin:
                     table[i, j] = min(table[i, j], at_start[k, g])
-                if j not in tells:
+                if j not in at_stop:
                     table[i, j] = min(table[i, j], at_end[k, g])
                 _strength(
                     table, data, i, first, last, guard, at_start[k, g], rate_start[k, g], rate_end[k, g]
@@ -62,7 +62,7 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
             for clock, g, state in watch(nodes[i, 1:], begin[i], end[i], work.numbers[i]):
                 own = EVENTS.at_end * span
                 j = guards[g].contact
-                if (j in told and clock - begin[i] < own) or (j in tells and end[i] - clock < own):
+                if (j in at_begin and clock - begin[i] < own) or (j in at_stop and end[i] - clock < own):
                     continue
                 found.append((i, g, state, clock))
         if found:
@@ -71,9 +71,9 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
                 np.array([f[3] for f in found]),
                 work.numbers[[f[0] for f in found]],
             )
-            for (i, g, _, _), there in zip(found, inner):
+            for (i, g, _, _), point in zip(found, inner):
                 j = guards[g].contact
-                table[i, j] = min(table[i, j], there[g])
+                table[i, j] = min(table[i, j], point[g])
 
 
 def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -> None:

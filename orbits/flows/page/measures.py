@@ -26,8 +26,8 @@ def names(model: Machine) -> tuple[str, ...]:
     - ``phase`` of the first event, ``period``, ``rate`` (2 pi / period), ``approach_speed`` of the fastest impact.
     - Forces and energies at the contacts (`orbits.machines.page.patterns`); the energies are per period of the orbit.
     """
-    what = OF_A_STATE if model.forced else OF_A_STATE[:-1]
-    own = [f"{kind}_{state}" for state in model.states for kind in what]
+    kinds = OF_A_STATE if model.forced else OF_A_STATE[:-1]
+    own = [f"{kind}_{state}" for state in model.states for kind in kinds]
     return (
         *own,
         *(["phase"] if model.forced else []),
@@ -48,10 +48,10 @@ def measure(
     KeyError
         If a name is unknown.
     """
-    known = names(model)
+    available = names(model)
     for name in wanted:
-        if name not in known:
-            raise KeyError(f"there is no measure {name!r}{way_out(name)}; choose from {', '.join(known)}")
+        if name not in available:
+            raise KeyError(f"there is no measure {name!r}{way_out(name)}; choose from {', '.join(available)}")
     solutions = Solutions(model, word, periods, nodes, params)
     states = {f"{kind}_{state}": (kind, i) for i, state in enumerate(model.states) for kind in OF_A_STATE}
     result: dict[str, np.ndarray] = {}
@@ -197,10 +197,12 @@ class Impacts:
     ) -> None:
         """Compute from states after the impacts (m, n), `clocks` (m,) and parameters (m, P); without a declared energy the masses are 1."""
         numbers = np.hstack([params, np.zeros((len(params), len(machine.equations.signed)))])
-        known = machine.equations.energy is not None
-        rows = (machine.compiled.loads if known else machine.compiled.rebound)(wall)(after, clocks, numbers)
+        has_energy = machine.equations.energy is not None
+        rows = (machine.compiled.loads if has_energy else machine.compiled.rebound)(wall)(
+            after, clocks, numbers
+        )
         self.speeds, self.restitution = rows[:, 0] / rows[:, 1], rows[:, 1]
-        self.mass = rows[:, 2] if known else np.ones(len(rows))
+        self.mass = rows[:, 2] if has_energy else np.ones(len(rows))
 
     @property
     def impulses(self) -> np.ndarray:

@@ -60,16 +60,16 @@ def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
     An example is an absorber that slides between its walls while another one hits its own.
     """
     e, names = machine.equations, machine.equations.layout.states
-    known: set[str] = set()
+    used: set[str] = set()
     for i, mode in enumerate(word.contact_modes):
         pattern = e.pattern(e.pattern_key(mode))
-        known |= set().union(*(variables_of(rate) for rate in pattern.rates))
+        used |= set().union(*(variables_of(rate) for rate in pattern.rates))
         for guard in pattern.guards:
             if guard.kind != HIT:
-                known |= variables_of(guard.value)
+                used |= variables_of(guard.value)
         if len(word) and word.letter(i).kind == HIT:
-            known |= e.deciding(word.letter(i).contact)
-    return tuple(j for j, name in enumerate(names) if name not in known)
+            used |= e.deciding(word.letter(i).contact)
+    return tuple(j for j, name in enumerate(names) if name not in used)
 
 
 def flown(
@@ -87,13 +87,13 @@ def flown(
     """
     compiled, e, out = machine.compiled, machine.equations, np.empty((len(ahead), machine.size))
     for i in np.unique(places).tolist():
-        here = np.flatnonzero(places == i)
-        here = here[np.argsort(ahead[here], kind="stable")]
+        chosen = np.flatnonzero(places == i)
+        chosen = chosen[np.argsort(ahead[chosen], kind="stable")]
         mode = modes[i % len(modes)]
         begin = begins[i] % TWO_PI if machine.forced else 0.0
-        grid = begin + np.append(0.0, ahead[here])
+        grid = begin + np.append(0.0, ahead[chosen])
         watch = compiled.watch(e.pattern_key(mode))
-        out[here] = watch.path(states[i], grid, compiled.numbers(params, mode))[1:]
+        out[chosen] = watch.path(states[i], grid, compiled.numbers(params, mode))[1:]
     return out
 
 
@@ -191,8 +191,8 @@ class Pieces(Equations[Machine]):
         """Return, for each friction that sticks for ever, the state whose closure its velocity replaces, and the compiled velocity."""
         e, found, taken = self.model.equations, [], set(self.loose)
         for j in frictions:
-            known = variables_of(e.velocity[j])
-            places = [k for k, name in enumerate(e.layout.states) if name in known and k not in taken]
+            used = variables_of(e.velocity[j])
+            places = [k for k, name in enumerate(e.layout.states) if name in used and k not in taken]
             taken.add(places[-1])
             letter = Letter("", j, STICK)
             key = e.pattern_key(self.word.entries(0))

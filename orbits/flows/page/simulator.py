@@ -179,8 +179,8 @@ def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
         if math.isinf(length):
             until = clocks[-1] + FOREVER
     kinds = np.array([kind for _, kind, _ in events], dtype=int)
-    begun = stepper.machine, stepper.params, np.array(clocks), stepper.base + stepper.clock, kinds, status
-    return PageTrajectory(*begun, np.array(states), modes, events, stepper.state.copy())
+    start = stepper.machine, stepper.params, np.array(clocks), stepper.base + stepper.clock, kinds, status
+    return PageTrajectory(*start, np.array(states), modes, events, stepper.state.copy())
 
 
 class PageSimulator(Simulator[Machine, PageTrajectory]):
@@ -287,24 +287,24 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         """
         if not self.forced:
             return None
-        machine, here = self.model, np.array(point, dtype=float)
+        machine, state = self.model, np.array(point, dtype=float)
         compiled = machine.compiled
-        numbers = compiled.numbers(self.params, machine.rest_mode(self.params, here, 0.0))
-        gaps = compiled.contact_values().one(here, 0.0, numbers)
+        numbers = compiled.numbers(self.params, machine.rest_mode(self.params, state, 0.0))
+        gaps = compiled.contact_values().one(state, 0.0, numbers)
         for j in machine.equations.gap:
-            slopes = compiled.gap_slopes(j).one(here, 0.0, numbers)
+            slopes = compiled.gap_slopes(j).one(state, 0.0, numbers)
             steep = float(np.linalg.norm(slopes))
             if not abs(gaps[j]) < near * steep:
                 continue
-            here = here - gaps[j] * slopes / steep**2
-            row = compiled.impact_map(j).one(here, 0.0, numbers)
-            jump, rate = row[: machine.size] - here, row[machine.size]
+            state = state - gaps[j] * slopes / steep**2
+            row = compiled.impact_map(j).one(state, 0.0, numbers)
+            jump, rate = row[: machine.size] - state, row[machine.size]
             if (
                 rate > 0.0
             ):  # just after an impact: the impulse back has the opposite sign and is larger by 1/restitution
-                jump = jump / compiled.rebound(j).one(here, 0.0, numbers)[1]
+                jump = jump / compiled.rebound(j).one(state, 0.0, numbers)[1]
             if rate != 0.0 and np.all(np.isfinite(jump)):
-                return here + jump, slopes / steep
+                return state + jump, slopes / steep
         return None
 
     # ------------------------------------------------------------------ settling

@@ -239,15 +239,15 @@ def on_border(equations: Equations, u: np.ndarray, p: float, margin: int) -> tup
         equations.kernels.examine(equations.data, found, p, equations.scratch, row)
         return found, float(row[2 * equations.n_multipliers + margin])
 
-    before, here, q = at(p)[1], np.nan, p + SOLVING.shift * (1.0 + abs(p))
+    before, margin_now, q = at(p)[1], np.nan, p + SOLVING.shift * (1.0 + abs(p))
     for _ in range(SECANTS):
-        u, here = at(q)
-        if not np.isfinite(here) or here == before:
+        u, margin_now = at(q)
+        if not np.isfinite(margin_now) or margin_now == before:
             break
-        if abs(here) <= EVENTS.zero * (1.0 + np.abs(u).max()):
+        if abs(margin_now) <= EVENTS.zero * (1.0 + np.abs(u).max()):
             return u, q
-        p, q, before = q, q - here * (q - p) / (here - before), here
-    return (u, q) if np.isfinite(here) and abs(here) < SOLVING.near else (None, q)
+        p, q, before = q, q - margin_now * (q - p) / (margin_now - before), margin_now
+    return (u, q) if np.isfinite(margin_now) and abs(margin_now) < SOLVING.near else (None, q)
 
 
 def smooth(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray) -> WithoutEvents:
@@ -263,10 +263,10 @@ def smooth(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: n
             isinstance(contact, Wall) and entry == HELD
         ):
             raise ValueError(f"{contact.described} holds: such a motion is not smooth")
-    known: dict[tuple[int, ...], WithoutEvents] = vars(machine).setdefault("_smooth", {})
-    if mode not in known:
-        known[mode] = WithoutEvents(machine, mode, params, state)
-    return known[mode]
+    flows: dict[tuple[int, ...], WithoutEvents] = vars(machine).setdefault("_smooth", {})
+    if mode not in flows:
+        flows[mode] = WithoutEvents(machine, mode, params, state)
+    return flows[mode]
 
 
 def beside(machine: Machine, state: Mapping[str, float] | None = None, **parameters: float) -> WithoutEvents:
@@ -343,10 +343,10 @@ def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> Equilibria | CycleProblem | None:
     """Rebuild the problem of equilibria or cycles from what ``describe()`` returned; None if its machine file must not be executed."""
-    about = description["flow"]
-    machine = machine_again(about["machine"], trust)
+    data = description["flow"]
+    machine = machine_again(data["machine"], trust)
     if machine is None:
         return None
     params = machine.vector(description["p0"])
-    flow = smooth(machine, tuple(about["modes"]), params, np.array(about["x0"], dtype=float))
+    flow = smooth(machine, tuple(data["modes"]), params, np.array(data["x0"], dtype=float))
     return flow.problem_of(description)

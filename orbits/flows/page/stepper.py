@@ -122,7 +122,7 @@ class Stepper:
                 )
         for j in self._frictions * len(self._frictions):  # the slip of one may overcome the next one
             if self.modes[j] == STUCK:
-                self.modes = self._with(j, self._at_rest(j))
+                self.modes = self._changed_mode(j, self._at_rest(j))
         self._agree()
         self._fresh = True
         for j in self._touched:
@@ -142,7 +142,7 @@ class Stepper:
         """Return the gap, velocity or surface function of each contact at the present state."""
         if not self.machine.contacts:
             return np.zeros(0)
-        return self._now(self._values)
+        return self._evaluated(self._values)
 
     # ------------------------------------------------------------------ laws
     @property
@@ -164,17 +164,17 @@ class Stepper:
             found = self._numbers[self.modes] = self.compiled.numbers(self.params, self.modes)
         return found
 
-    def _now(self, values: Values) -> np.ndarray:
+    def _evaluated(self, values: Values) -> np.ndarray:
         """Evaluate functions at the present state and mode."""
         return values.one(self.state, self.clock, self.numbers)
 
     def _guards(self, modes: tuple[int, ...] | None = None) -> list[tuple[float, float, Guard]]:
         """Return value, rate and guard of every guard at the present state, in a mode (by default the present one)."""
-        kept = self.modes
-        self.modes = kept if modes is None else modes
+        modes_before = self.modes
+        self.modes = modes_before if modes is None else modes
         tools = self._tools
-        row, count = self._now(tools.values).tolist(), len(tools.guards)
-        self.modes = kept
+        row, count = self._evaluated(tools.values).tolist(), len(tools.guards)
+        self.modes = modes_before
         return list(zip(row[:count], row[count:], tools.guards))
 
     def _move(self, until: float) -> None:
@@ -182,30 +182,30 @@ class Stepper:
         self._tools.watch.move(self.state, self.clock, until, self.numbers)
         self.clock = until
 
-    def _with(self, contact: int, mode: int) -> tuple[int, ...]:
+    def _changed_mode(self, contact: int, mode: int) -> tuple[int, ...]:
         changed = list(self.modes)
         changed[contact] = mode
         return tuple(changed)
 
     def _at_rest(self, friction: int) -> int:
         """Return the mode of a friction at zero velocity: stuck, or the sign of the motion that begins."""
-        for value, _, guard in self._guards(self._with(friction, STUCK)):
+        for value, _, guard in self._guards(self._changed_mode(friction, STUCK)):
             if guard.contact == friction and value < 0.0:
                 return guard.sign
         return STUCK
 
     def _gap_rate(self, wall: int) -> float:
-        return float(self._now(self._impacts[wall])[len(self.state)])
+        return float(self._evaluated(self._impacts[wall])[len(self.state)])
 
     def _impact(self, wall: int) -> int:
         """Apply Newton's law; return HOLD if impacts have accumulated or leave no speed, else HIT."""
-        row, n = self._now(self._impacts[wall]), len(self.state)
+        row, n = self._evaluated(self._impacts[wall]), len(self.state)
         before = float(row[n])
         self.state[:] = row[:n]
         for j, place in self._touched[wall]:
             sign = 1 if row[place] > 0.0 else -1
             if sign != self.modes[j] and row[place] != 0.0 and self.modes[j] != ABSENT:
-                self.modes = self._with(j, sign)
+                self.modes = self._changed_mode(j, sign)
         after = self._gap_rate(wall)
         size = 1.0 + np.abs(self.state).max()
         push = self._push_back(wall) if after * after < EVENTS.slow * size * size else 0.0
@@ -246,10 +246,10 @@ class Stepper:
 
     def _piled_up(self, wall: int, rate: float) -> bool:
         """Return whether a hop from a wall that holds, at this rate of the gap, belongs to accumulated impacts."""
-        kept, fresh = self.modes, self._fresh
+        modes, fresh = self.modes, self._fresh
         self._let_go(wall, opening=rate > 0.0)
         push = self._push_back(wall)
-        self.modes, self._fresh = kept, fresh
+        self.modes, self._fresh = modes, fresh
         return push < 0.0 and rate * rate < EVENTS.together * abs(push) * (1.0 + np.abs(self.state).max())
 
     def _rest(self, walls: list[int], near: float) -> None:
@@ -259,20 +259,20 @@ class Stepper:
             if not moving:
                 return
             for wall in moving:
-                self.state[:] = self._now(self.compiled.settled(wall))
+                self.state[:] = self._evaluated(self.compiled.settled(wall))
 
     def _let_go(self, wall: int, opening: bool = True) -> None:
         """End the hold of a wall; frictions tied to it slide as its gap opens or closes."""
-        modes = list(self._with(wall, FREE))
-        for (of, k), sign in self.machine.alphabet.flips.items():
-            if of == wall and sign is not None and k not in self.absent:
+        modes = list(self._changed_mode(wall, FREE))
+        for (contact, k), sign in self.machine.alphabet.flips.items():
+            if contact == wall and sign is not None and k not in self.absent:
                 modes[k] = sign if opening else -sign
         self.modes = tuple(modes)
         self._fresh = True
 
-    def _off(self, wall: int) -> None:
+    def _opened(self, wall: int) -> None:
         """Open the gap of a body that sticks at a wall by roundoff; otherwise roundoff would trigger impacts again and again."""
-        slopes, gap = self._now(self.compiled.gap_slopes(wall)), float(self.contact_values()[wall])
+        slopes, gap = self._evaluated(self.compiled.gap_slopes(wall)), float(self.contact_values()[wall])
         self.state += (EVENTS.zero * (1.0 + np.abs(self.state).max()) - gap) * slopes / float(slopes @ slopes)
 
     def _push_back(self, wall: int) -> float:
@@ -281,12 +281,12 @@ class Stepper:
         if values is None:
             key = self.equations.pattern_key(self.modes)
             values = self._pushes[wall, self.modes] = self.compiled.gap_acceleration(wall, key)
-        return float(self._now(values)[0])
+        return float(self._evaluated(values)[0])
 
     def _hold(self, wall: int) -> int:
         """Begin to rest on a wall: remove the remaining rate of the gap."""
-        self.state[:] = self._now(self.compiled.settled(wall))
-        modes = list(self._with(wall, HELD))
+        self.state[:] = self._evaluated(self.compiled.settled(wall))
+        modes = list(self._changed_mode(wall, HELD))
         values = self.contact_values()
         for j, _ in self._touched[wall]:  # the last impact may have changed the sign of a velocity
             if modes[j] != ABSENT:
@@ -316,7 +316,7 @@ class Stepper:
             self.count += 1
             return wall, self._struck(wall), 0
         if self._last >= 0:
-            event = self._at_once()
+            event = self._simultaneous()
             if event is not None:
                 self.count += 1
                 return event
@@ -345,7 +345,7 @@ class Stepper:
                 self._rebase()
                 return event
 
-    def _at_once(self) -> tuple[int, int, int] | None:
+    def _simultaneous(self) -> tuple[int, int, int] | None:
         """Return an event at the same instant as the last one, or None.
 
         Equal bodies begin to slip, or come to rest, at the same instant, and an event may add a force that another friction cannot hold. Such
@@ -367,11 +367,11 @@ class Stepper:
 
     def _vanishing(self) -> list[Guard]:
         """Return the guards of turns and slips that happen now, and of walls that would have to pull."""
-        touch, together = EVENTS.touch, EVENTS.together
+        touch, same_instant = EVENTS.touch, EVENTS.together
         return [
             guard
             for value, rate, guard in self._guards()
-            if (rate < -touch and guard.kind in (SLIP, TURN) and abs(value) < together * (1.0 - rate))
+            if (rate < -touch and guard.kind in (SLIP, TURN) and abs(value) < same_instant * (1.0 - rate))
             or (value < -touch and guard.kind in (SLIP, RELEASE))
         ]
 
@@ -394,7 +394,7 @@ class Stepper:
             if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # the opening gap is negative by roundoff
                 self.state, self.clock = before, begin
                 if self.contact_values()[guard.contact] <= EVENTS.zero * (1.0 + np.abs(self.state).max()):
-                    self._off(guard.contact)
+                    self._opened(guard.contact)
                 return
 
     def _rise(self, end: float) -> None:
@@ -404,9 +404,9 @@ class Stepper:
         """
         before, begin = self.state.copy(), self.clock
         for _ in range(HALVINGS):
-            there = begin + self._hop * self.clock_rate
-            if begin < there < end:
-                self._move(there)
+            top = begin + self._hop * self.clock_rate
+            if begin < top < end:
+                self._move(top)
                 if all(value > 0.0 for value, _, _ in self._guards()):
                     return
                 self.state[:], self.clock = before, begin
@@ -417,12 +417,12 @@ class Stepper:
         near = EVENTS.touch * (1.0 + np.abs(self.state).max())
         for value, rate, guard in self._guards():
             if guard.kind == SWITCH and abs(value) < near and abs(rate) < near:
-                kept = self.state.copy(), self.clock
+                before = self.state.copy(), self.clock
                 self._move(self.clock + EVENTS.leave)
                 crossed = next(value for value, _, g in self._guards() if g is guard) < 0.0
-                self.state, self.clock = kept
+                self.state, self.clock = before
                 if crossed:
-                    self.modes = self._with(guard.contact, -self.modes[guard.contact])
+                    self.modes = self._changed_mode(guard.contact, -self.modes[guard.contact])
 
     def _rebase(self) -> None:
         if self.machine.forced:
@@ -439,11 +439,11 @@ class Stepper:
         place, rate = next((k, r) for k, (_, r, g) in enumerate(self._guards()) if g.contact == switch)
         if abs(rate) > EVENTS.touch * (1.0 + np.abs(self.state).max()):
             return False
-        kept = self.state.copy(), self.clock
+        before = self.state.copy(), self.clock
         self._move(self.clock + EVENTS.leave)
         if self._guards()[place][0] > 0.0:
             return True
-        self.state, self.clock = kept
+        self.state, self.clock = before
         return False
 
     def _driven(self, friction: int) -> int | None:
@@ -454,7 +454,9 @@ class Stepper:
         if wall is None:
             return None
         # the reserves of both directions add up to twice the limit times the acceleration per unit of force
-        freedom = sum(v for v, _, g in self._guards(self._with(friction, STUCK)) if g.contact == friction)
+        freedom = sum(
+            v for v, _, g in self._guards(self._changed_mode(friction, STUCK)) if g.contact == friction
+        )
         return None if freedom > 0.0 else wall
 
     def _turned_by(self, wall: int, friction: int) -> tuple[int, int, int]:
@@ -462,7 +464,7 @@ class Stepper:
 
         The wall releases the body if it would have to pull after the turn; the fate of the velocity is then the next event.
         """
-        turned = self._with(friction, -self.modes[friction])
+        turned = self._changed_mode(friction, -self.modes[friction])
         if any(v < 0.0 for v, _, g in self._guards(turned) if g.contact == wall and g.kind == RELEASE):
             self._let_go(wall)
             return wall, RELEASE, 0
@@ -473,7 +475,7 @@ class Stepper:
         j, kind = guard.contact, guard.kind
         if kind == HIT:
             if any(self.modes[f] == STUCK for f in self._tied[j]):
-                self._off(j)
+                self._opened(j)
                 return None
             return j, self._struck(j), 0
         if kind == TURN:
@@ -484,10 +486,10 @@ class Stepper:
             after = self._at_rest(j)
             if after == before:
                 return None  # the velocity only touches zero
-            self.modes = self._with(j, after)
+            self.modes = self._changed_mode(j, after)
             return j, STICK if after == STUCK else TURN, after
         if kind == SLIP:
-            self.modes = self._with(j, guard.sign)
+            self.modes = self._changed_mode(j, guard.sign)
             self._fresh = True
             return j, SLIP, guard.sign
         if kind == RELEASE:
@@ -496,7 +498,7 @@ class Stepper:
         if self._touches(j):
             return None
         after = -self.modes[j]
-        self.modes = self._with(j, after)
+        self.modes = self._changed_mode(j, after)
         rate = next(r for _, r, g in self._guards() if g.contact == j and g.kind == SWITCH)
         if rate < 0.0:
             raise SimulationError(

@@ -54,14 +54,14 @@ class Variations:
         """Advance stepper and derivatives; see `Stepper.advance`."""
         stepper = self.stepper
         state, modes = stepper.state.copy(), stepper.modes
-        begin, since = stepper.clock, stepper.base + stepper.clock
+        begin, start = stepper.clock, stepper.base + stepper.clock
         event = stepper.advance(until)
         if not self._known:
             return event
         if event is not None and event[1] in (HOLD, RELEASE):
             self._known = False
             return event
-        end = begin + (stepper.base + stepper.clock - since)
+        end = begin + (stepper.base + stepper.clock - start)
         self._pass(state, modes, begin, end, event)
         return event
 
@@ -129,7 +129,7 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
     """
     other = Stepper(stepper.machine, stepper.params)
     generator = np.random.default_rng(1)
-    _beside(stepper, other, generator.standard_normal(len(stepper.state)))
+    _displace(stepper, other, generator.standard_normal(len(stepper.state)))
     start = _distance(stepper, other)[1]
     logs: list[float] = []
     waited, tries = 1, 0
@@ -139,17 +139,17 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
             exponent, error = mean_of_blocks(np.array(logs), BLOCKS)
             if exponent > CLEAR * error:  # certainly chaotic
                 return exponent, error
-        alike = _together(stepper, other)
-        apart, size = _distance(stepper, other)
-        if not alike and waited < PATIENCE and size < SIMULATING.far:
+        same_modes = _advance_both(stepper, other)
+        separation, size = _distance(stepper, other)
+        if not same_modes and waited < PATIENCE and size < SIMULATING.far:
             waited += 1
             continue
-        if alike and start > 0.0 and size > 0.0:
+        if same_modes and start > 0.0 and size > 0.0:
             if tries > FORGET:
                 logs.append(math.log(size / start) / waited)
         else:
-            apart = generator.standard_normal(len(stepper.state))
-        _beside(stepper, other, apart)
+            separation = generator.standard_normal(len(stepper.state))
+        _displace(stepper, other, separation)
         start = _distance(stepper, other)[1]
         waited = 1
     if len(logs) < BLOCKS:
@@ -157,7 +157,7 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
     return mean_of_blocks(np.array(logs), BLOCKS)
 
 
-def _beside(stepper: Stepper, other: Stepper, direction: np.ndarray) -> None:
+def _displace(stepper: Stepper, other: Stepper, direction: np.ndarray) -> None:
     scale = SIMULATING.nudge * (1.0 + float(np.abs(stepper.state).max()))
     state = stepper.state + scale * direction / max(float(np.abs(direction).max()), SMALLEST)
     other.start(state, stepper.clock, stepper.modes)
@@ -165,11 +165,11 @@ def _beside(stepper: Stepper, other: Stepper, direction: np.ndarray) -> None:
 
 
 def _distance(stepper: Stepper, other: Stepper) -> tuple[np.ndarray, float]:
-    apart = other.state - stepper.state
-    return apart, float(np.abs(apart).max())
+    separation = other.state - stepper.state
+    return separation, float(np.abs(separation).max())
 
 
-def _together(stepper: Stepper, other: Stepper) -> bool:
+def _advance_both(stepper: Stepper, other: Stepper) -> bool:
     """Move both on by a forcing period (or an event); return whether they are in the same modes then."""
     if not stepper.machine.forced:
         event, image = (

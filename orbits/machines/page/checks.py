@@ -71,51 +71,53 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     _check_periods(draws)
     _check_surfaces(others)
     for j, force in e.force.items():
-        what = e.contacts[j].described
+        label = e.contacts[j].described
         limit = draws.of([e.limit[j]])[:, 0]
         if np.all(limit < 0.0):
-            raise PageError(f"{what}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
+            raise PageError(f"{label}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
         effect = e.friction_effect(j)
         (name,) = variables_of(force)
         if not any(name in variables_of(rate) for rate in e.rates):
             raise PageError(
-                f"{what}: motion ignores contact.{e.contacts[j].name}; add the force to the rate of a velocity it acts on"
+                f"{label}: motion ignores contact.{e.contacts[j].name}; add the force to the rate of a velocity it acts on"
             )
         slopes = [row[0] for row in derivatives(e.rates, [force])]
         if any(name in variables_of(slope) for slope in (effect, *slopes)):
             raise PageError(
-                f"{what}: motion must be affine in contact.{e.contacts[j].name} (force times a mass factor)"
+                f"{label}: motion must be affine in contact.{e.contacts[j].name} (force times a mass factor)"
             )
         sizes = draws.of([replaced(effect, e.without_forces)])[:, 0]
         if not np.all(sizes[np.isfinite(sizes)] > FORMULAS.zero):
             raise PageError(
-                f"{what}: a positive contact.{e.contacts[j].name} must speed its velocity up; here it gives the acceleration "
+                f"{label}: a positive contact.{e.contacts[j].name} must speed its velocity up; here it gives the acceleration "
                 f"{float(np.nanmin(sizes)):.3g}. Change the sign of the force in motion, or of the velocity"
             )
     for j, contact in enumerate(e.contacts):
         if not isinstance(contact, Wall):
             continue
-        what = contact.described
+        label = contact.described
         rate = e.along(e.gap[j], e.rates)
         if e.without_forces.keys() & variables_of(rate):
             raise PageError(
-                f"{what}: the rate of its gap contains a friction force; a gap is a distance, not a velocity"
+                f"{label}: the rate of its gap contains a friction force; a gap is a distance, not a velocity"
             )
         after = e.impact(j)
         sizes = draws.of([e.toward(rate, e.push[j])])[:, 0]
         if not np.all(np.abs(sizes[np.isfinite(sizes)]) > FORMULAS.zero):
             raise PageError(
-                f"{what}: an impulse along push = {dict(contact.push)!r} does not change the rate of its gap; "
+                f"{label}: an impulse along push = {dict(contact.push)!r} does not change the rate of its gap; "
                 "push the velocities of the bodies that meet there"
             )
         table = draws.of([e.gap_rate(j), e.restitution[j], e.gap[j], *after])
-        later = draws.of([e.gap_rate(j), e.gap[j]], states=table[:, 3:])
-        if np.abs(later[:, 1] - table[:, 2]).max() > FORMULAS.same * (1.0 + np.abs(table[:, 2]).max()):
-            raise PageError(f"{what}: the impulse moves the gap itself; push rates of positions only")
-        if np.abs(later[:, 0] + table[:, 1] * table[:, 0]).max() > FORMULAS.same * (
+        after_impulse = draws.of([e.gap_rate(j), e.gap[j]], states=table[:, 3:])
+        if np.abs(after_impulse[:, 1] - table[:, 2]).max() > FORMULAS.same * (
+            1.0 + np.abs(table[:, 2]).max()
+        ):
+            raise PageError(f"{label}: the impulse moves the gap itself; push rates of positions only")
+        if np.abs(after_impulse[:, 0] + table[:, 1] * table[:, 0]).max() > FORMULAS.same * (
             1.0 + np.abs(table[:, 0]).max()
         ):
-            raise PageError(f"{what}: the rate of its gap must be linear in what push changes")
+            raise PageError(f"{label}: the rate of its gap must be linear in what push changes")
         for k in e.signed:
             flip = _flip(others, j, e.velocity[k] if k in e.velocity else e.surface[k])
             if flip != 0:
@@ -128,17 +130,17 @@ def _check_periods(draws: Draws) -> None:
     e = draws.equations
     if e.phase_rate is None:
         return
-    told = [(f"motion's rate of {n}", replaced(r, e.without_forces)) for n, r in zip(e.states, e.rates)]
-    told += [(name, table[j]) for name, _, j, table in e.formulas()]
-    values = [value for _, value in told]
-    here, there = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
-    for (what, _), a, b in zip(told, here.T, there.T):
+    formulas = [(f"motion's rate of {n}", replaced(r, e.without_forces)) for n, r in zip(e.states, e.rates)]
+    formulas += [(name, table[j]) for name, _, j, table in e.formulas()]
+    values = [value for _, value in formulas]
+    first, second = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
+    for (label, _), a, b in zip(formulas, first.T, second.T):
         with np.errstate(invalid="ignore"):
             gap = np.abs(a - b)
         if np.nanmax(gap, initial=0.0) > FORMULAS.same * (1.0 + np.nanmax(np.abs(a), initial=0.0)):
             k = int(np.nanargmax(gap))
             raise PageError(
-                f"{what} does not have the period 2 pi in the phase: at phase = {draws.clock[k]:.4g} it is {a[k]:.6g}, 2 pi later "
+                f"{label} does not have the period 2 pi in the phase: at phase = {draws.clock[k]:.4g} it is {a[k]:.6g}, 2 pi later "
                 f"{b[k]:.6g}; let phase_rate be the lowest frequency of the forcing, and write the others as whole multiples of the phase"
             )
 
@@ -147,28 +149,28 @@ def _check_surfaces(draws: Draws) -> None:
     """Check that switches affect the motion, and that no two contacts always act together."""
     e = draws.equations
     for j, surface in e.surface.items():
-        what, name = e.contacts[j].described, e.contacts[j].name
+        label, name = e.contacts[j].described, e.contacts[j].name
         if not variables_of(surface) & {*e.layout.states, e.layout.clock}:
             raise PageError(
-                f"{what}: its surface is a constant; give a function of the states that changes sign"
+                f"{label}: its surface is a constant; give a function of the states that changes sign"
             )
-        known = set().union(*(variables_of(v) for v in (*e.rates, *e.limit.values())))
-        if not variables_of(e.sign[j]) & known:
+        used = set().union(*(variables_of(v) for v in (*e.rates, *e.limit.values())))
+        if not variables_of(e.sign[j]) & used:
             raise PageError(
-                f"{what}: motion ignores contact.{name}; use it where the law changes, or leave the switch out"
+                f"{label}: motion ignores contact.{name}; use it where the law changes, or leave the switch out"
             )
     pairs = [*e.velocity.items(), *e.surface.items()]
     for place, (j, one) in enumerate(pairs):
         for k, other in pairs[place + 1 :]:
             if j not in e.velocity or not _proportional(draws, one, other):
                 continue
-            both = f"{e.contacts[j].described} and {e.contacts[k].described}"
+            pair = f"{e.contacts[j].described} and {e.contacts[k].described}"
             if k in e.velocity:
                 raise PageError(
-                    f"{both} have the same velocity; declare one DryFriction whose limit is the sum of theirs"
+                    f"{pair} have the same velocity; declare one DryFriction whose limit is the sum of theirs"
                 )
             raise PageError(
-                f"{both} change together; leave the switch out: what turns with the velocity belongs into the friction's limit, "
+                f"{pair} change together; leave the switch out: what turns with the velocity belongs into the friction's limit, "
                 "for example limit=lambda state, phase, p: p.friction + p.drag * state.v**2"
             )
 
@@ -225,12 +227,12 @@ def check_names(
         )
     if isinstance(states, str) or not states:
         raise PageError(f"states = {states!r} must be a sequence of names, for example ('x', 'v')")
-    for what, names in (("states", list(states)), ("parameters", list(parameters))):
+    for field, names in (("states", list(states)), ("parameters", list(parameters))):
         for item in names:
             if not (isinstance(item, str) and item.isidentifier()):
-                raise PageError(f"{what}: {item!r} is no name; use letters, digits and underscores")
+                raise PageError(f"{field}: {item!r} is no name; use letters, digits and underscores")
         if len(set(names)) != len(names):
-            raise PageError(f"{what} = {names!r} has a name twice")
+            raise PageError(f"{field} = {names!r} has a name twice")
     for item, value in parameters.items():
         try:
             number = float(value)
@@ -261,56 +263,56 @@ def _check_contacts(states: Sequence[str], contacts: Sequence[Any]) -> None:
     for contact in contacts:
         if not isinstance(contact, (Wall, DryFriction, Switch)):
             raise PageError(f"contacts has {contact!r}; it may have Wall, DryFriction and Switch")
-        what = contact.described
+        label = contact.described
         if isinstance(contact, DryFriction) and len(tuple(contact.letters)) != 3:
             raise PageError(
-                f"{what}: letters = {contact.letters!r} must be three, for a turn, a stick and a slip"
+                f"{label}: letters = {contact.letters!r} must be three, for a turn, a stick and a slip"
             )
         if not isinstance(contact, Wall):
             if not str(contact.name).isidentifier():
-                raise PageError(f"{what}: the name must be one that contact.<name> can have")
+                raise PageError(f"{label}: the name must be one that contact.<name> can have")
             if contact.name in named:
-                raise PageError(f"{named[contact.name]} and {what} share a name; give one of them another")
-            named[contact.name] = what
+                raise PageError(f"{named[contact.name]} and {label} share a name; give one of them another")
+            named[contact.name] = label
         for letter in contact.letters:
             if not isinstance(letter, str) or not letter or any(c in " []" or c.isspace() for c in letter):
-                raise PageError(f"{what}: {letter!r} is no letter of a word; use letters and digits")
+                raise PageError(f"{label}: {letter!r} is no letter of a word; use letters and digits")
             if letter in taken:
                 hint = " (letters=('t2', 's2', 'u2'))" if isinstance(contact, DryFriction) else ""
                 raise PageError(
-                    f"{taken[letter]} and {what} share the letter {letter!r}; give one of them another{hint}"
+                    f"{taken[letter]} and {label} share the letter {letter!r}; give one of them another{hint}"
                 )
-            taken[letter] = what
+            taken[letter] = label
         if isinstance(contact, Wall):
-            _check_wall(what, states, contact)
+            _check_wall(label, states, contact)
 
 
-def _check_wall(what: str, states: Sequence[str], contact: Wall) -> None:
+def _check_wall(label: str, states: Sequence[str], contact: Wall) -> None:
     if not isinstance(contact.push, Mapping):
         raise PageError(
-            f"{what}: push = {contact.push!r} must say how an impulse changes the states by name, for example "
+            f"{label}: push = {contact.push!r} must say how an impulse changes the states by name, for example "
             f"{{{states[-1]!r}: -1.0}}"
         )
     unknown = [k for k in contact.push if k not in states]
     if unknown or not contact.push:
         raise PageError(
-            f"{what}: push names {unknown[0] if unknown else 'nothing'!r}; "
+            f"{label}: push names {unknown[0] if unknown else 'nothing'!r}; "
             f"say how an impulse changes the states, of {', '.join(states)}"
         )
     if isinstance(contact.restitution, str):
         return
     if not isinstance(contact.restitution, Real):
         raise PageError(
-            f"{what}: restitution = {contact.restitution!r} must be a number or the name of a parameter"
+            f"{label}: restitution = {contact.restitution!r} must be a number or the name of a parameter"
         )
-    check_restitution(what, float(contact.restitution))
+    check_restitution(label, float(contact.restitution))
 
 
-def check_restitution(what: str, value: float) -> None:
+def check_restitution(label: str, value: float) -> None:
     """Check Newton's coefficient."""
     if not 0.0 < value <= 1.0:
         raise PageError(
-            f"{what}: restitution = {value:g} is out of range; give a number above 0 and at most 1"
+            f"{label}: restitution = {value:g} is out of range; give a number above 0 and at most 1"
         )
 
 
@@ -349,9 +351,9 @@ def check_response(response: str | None, states: Sequence[str], contacts: Sequen
         If it is none of the measures that both orbits and simulations have.
     """
     walls = any(isinstance(contact, Wall) for contact in contacts)
-    known = [*(f"{kind}_{states[0]}" for kind in OF_A_STATE[:3]), *(["approach_speed"] if walls else [])]
-    if response is not None and response not in known:
-        raise PageError(f"response = {response!r}: expected {', '.join(known)}")
+    choices = [*(f"{kind}_{states[0]}" for kind in OF_A_STATE[:3]), *(["approach_speed"] if walls else [])]
+    if response is not None and response not in choices:
+        raise PageError(f"response = {response!r}: expected {', '.join(choices)}")
 
 
 def check_energy(e: Equations, params: np.ndarray, wall: int) -> None:

@@ -23,13 +23,13 @@ def once(make: Callable[Concatenate[Compiled, Key], Made]) -> Callable[Concatena
     """Decorator for a method of `Compiled` whose result is made at the first call with the same arguments."""
 
     @wraps(make)
-    def kept(self: Compiled, *args: Key.args, **named: Key.kwargs) -> Made:
+    def cached(self: Compiled, *args: Key.args, **named: Key.kwargs) -> Made:
         key = (make.__name__, args)
         if key not in self.made:
             self.made[key] = make(self, *args, **named)
         return self.made[key]
 
-    return kept
+    return cached
 
 
 class Compiled:
@@ -107,8 +107,8 @@ class Compiled:
     def _varied(self, values: Sequence[Symbol], active: tuple[int, ...]) -> Values:
         """Return values, each with its derivatives by states, clock and active numbers."""
         e = self.equations
-        by = [*e.x, e.clock, *(variable(self.layout.numbers[i]) for i in active)]
-        table = [[value, *row] for value, row in zip(values, derivatives(values, by))]
+        variables = [*e.x, e.clock, *(variable(self.layout.numbers[i]) for i in active)]
+        table = [[value, *row] for value, row in zip(values, derivatives(values, variables))]
         return self._values(*(entry for row in table for entry in row))
 
     @once

@@ -35,8 +35,8 @@ def load_page(path: str | Path, name: str) -> Machine:
             raise ValueError(
                 f"{path}: {name} is a {kind}; an orbits.Machine or a contvines.FlowProblem is expected"
             )
-        known = ", ".join(names_of(module, Machine)) or "none"
-        raise ValueError(f"{path}: it has no machine {name!r}; it declares {known}")
+        names = ", ".join(names_of(module, Machine)) or "none"
+        raise ValueError(f"{path}: it has no machine {name!r}; it declares {names}")
     return machine
 
 

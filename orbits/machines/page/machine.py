@@ -156,10 +156,10 @@ class Machine(Varying):
     @property
     def units(self) -> dict[str, str]:
         """Units of parameters, states and measures by name; plain numbers have none."""
-        shown = self._units.shown(self.states)
+        units = self._units.shown(self.states)
         return (
-            shown | {name: OF_LOADS[name if name in OF_LOADS else "impulse"] for name in self.load_names}
-            if shown
+            units | {name: OF_LOADS[name if name in OF_LOADS else "impulse"] for name in self.load_names}
+            if units
             else {}
         )
 
@@ -227,7 +227,7 @@ class Machine(Varying):
             If the value is impossible; the message names parameter, value and remedy.
         """
         vector = self._numbers({name: value})
-        if wrong := self._possible.wrong(vector, alone=name):
+        if wrong := self._possible.wrong(vector, single=name):
             raise ParameterError(wrong)
 
     def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:

@@ -52,22 +52,22 @@ class MirrorImage:
         self.turned = self._turned(draws)
         # name, formula, formula whose mirror image equals it, and that image's sign
         rows: list[tuple[str, Symbol, Symbol, float]] = []
-        for name, what, j, table in e.formulas():
-            turns = what == "velocity" or (what == "surface" and j in self.turned)
+        for name, kind, j, table in e.formulas():
+            turns = kind == "velocity" or (kind == "surface" and j in self.turned)
             rows.append((name, table[j], table[self.images[j]], -1.0 if turns else 1.0))
         rates = e.pattern(e.pattern_key([1 if j in e.signed else 0 for j in range(len(e.contacts))])).rates
         rows += [(f"motion's rate of {name}", rate, rate, -1.0) for name, rate in zip(e.states, rates)]
         names, own, images, signs = zip(*rows)
         self._own, self._image, self._signs = Values(e.layout, own), Values(e.layout, images), np.array(signs)
         self._holds = lru_cache(maxsize=256)(self._checked)
-        for name, here, there in zip(names, *(table.T for table in self._both(draws))):
-            wrong = self._wrong(here, there)
+        for name, values, image_values in zip(names, *(table.T for table in self._values_of_both(draws))):
+            wrong = self._wrong(values, image_values)
             if wrong is not None:
                 state = ", ".join(f"{n} = {v:.4g}" for n, v in zip(e.states, draws.states[wrong]))
-                when = f", phase = {draws.clock[wrong]:.4g}" if e.phase_rate is not None else ""
+                phase_text = f", phase = {draws.clock[wrong]:.4g}" if e.phase_rate is not None else ""
                 raise PageError(
-                    f"mirror: {name} is not the mirror image: at {state}{when} it is {float(here[wrong]):.6g}, its image "
-                    f"gives {float(there[wrong]):.6g}; set mirror=None, or correct the formula"
+                    f"mirror: {name} is not the mirror image: at {state}{phase_text} it is {float(values[wrong]):.6g}, its image "
+                    f"gives {float(image_values[wrong]):.6g}; set mirror=None, or correct the formula"
                 )
 
     def holds(self, params: np.ndarray, varying: int | None = None) -> bool:
@@ -80,10 +80,10 @@ class MirrorImage:
         if varying is not None:
             size = abs(float(params[varying])) or 1.0
             draws.params[:, varying] += VARIED * size * np.linspace(-1.0, 1.0, DRAWS)
-        here, there = self._both(draws)
-        return all(self._wrong(a, b) is None for a, b in zip(here.T, there.T))
+        own, image = self._values_of_both(draws)
+        return all(self._wrong(a, b) is None for a, b in zip(own.T, image.T))
 
-    def _both(self, draws: Draws) -> tuple[np.ndarray, np.ndarray]:
+    def _values_of_both(self, draws: Draws) -> tuple[np.ndarray, np.ndarray]:
         """Return values of all formulas at random states, and values of their images, both of shape (DRAWS, count)."""
         e, signs = self.equations, np.empty_like(draws.signs)
         for place, j in enumerate(e.signed):
@@ -92,26 +92,26 @@ class MirrorImage:
                 -draws.signs[:, place] if turns else draws.signs[:, place]
             )
         with np.errstate(all="ignore"):
-            here = self._own(draws.states, draws.clock, np.hstack([draws.params, draws.signs]))
-            there = self._image(-draws.states, draws.clock + np.pi, np.hstack([draws.params, signs]))
-        return here, there * self._signs
+            own = self._own(draws.states, draws.clock, np.hstack([draws.params, draws.signs]))
+            image = self._image(-draws.states, draws.clock + np.pi, np.hstack([draws.params, signs]))
+        return own, image * self._signs
 
     def _turned(self, draws: Draws) -> frozenset[int]:
         """Return the switches whose surface is closer to minus its image."""
         e, found = self.equations, set()
         for j, k in self.images.items():
             if not isinstance(e.contacts[j], (Wall, DryFriction)):
-                here = draws.of([e.surface[j]])
-                there = draws.of([e.surface[k]], states=-draws.states, clock=draws.clock + np.pi)
-                if np.abs(here + there).max() < np.abs(here - there).max():
+                own = draws.of([e.surface[j]])
+                image = draws.of([e.surface[k]], states=-draws.states, clock=draws.clock + np.pi)
+                if np.abs(own + image).max() < np.abs(own - image).max():
                     found.add(j)
         return frozenset(found)
 
     @staticmethod
-    def _wrong(here: np.ndarray, there: np.ndarray) -> int | None:
+    def _wrong(own: np.ndarray, image: np.ndarray) -> int | None:
         """Return the state at which a formula and its image differ most; None if they agree."""
-        gap = np.abs(here - there)
-        agree = np.nanmax(gap) <= FORMULAS.same * (1.0 + np.nanmax(np.abs(here)))
+        gap = np.abs(own - image)
+        agree = np.nanmax(gap) <= FORMULAS.same * (1.0 + np.nanmax(np.abs(own)))
         return None if agree else int(np.nanargmax(gap))
 
 

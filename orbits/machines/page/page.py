@@ -110,8 +110,8 @@ class States(Sequence["Plain"]):
         return len(self._values)
 
     def __getattr__(self, name: str) -> Plain:
-        known = ", ".join(k for k in self.__dict__ if k != "_values")
-        raise PageError(f"state.{name}: there is no state of this name; the states are {known}")
+        names = ", ".join(k for k in self.__dict__ if k != "_values")
+        raise PageError(f"state.{name}: there is no state of this name; the states are {names}")
 
 
 class Named:
@@ -122,10 +122,10 @@ class Named:
         self.__dict__.update(values)
 
     def __getattr__(self, name: str) -> Plain:
-        known = ", ".join(k for k in self.__dict__ if k != "_what")
+        names = ", ".join(k for k in self.__dict__ if k != "_what")
         raise PageError(
             f"{self._what}.{name}: the machine declares no such {'parameter' if self._what == 'p' else 'contact'}; "
-            f"it has {known or 'none'}"
+            f"it has {names or 'none'}"
         )
 
 
@@ -142,22 +142,22 @@ class NoPhase:
     __pow__ = __neg__ = __float__ = __array__ = _refuse
 
 
-def called(what: str, function: object, *arguments: object) -> object:
+def called(label: str, function: object, *arguments: object) -> object:
     if not callable(function):
-        given = "state, phase, p, contact" if what == "motion" else "state, phase, p"
-        raise PageError(f"{what} is {function!r}; give a function, for example lambda {given}: ...")
+        given = "state, phase, p, contact" if label == "motion" else "state, phase, p"
+        raise PageError(f"{label} is {function!r}; give a function, for example lambda {given}: ...")
     try:
         return function(*arguments)
     except PageError:
         raise
     except TypeError as error:
-        says = str(error)
+        message = str(error)
         hint = ""
-        if "callable cos" in says or "has no callable" in says or "must be real number" in says:
+        if "callable cos" in message or "has no callable" in message or "must be real number" in message:
             hint = "; take cos, sin, sqrt, exp ... from orbits.symbols"
-        elif "positional argument" in says:
-            given = "(state, phase, p, contact)" if what == "motion" else "(state, phase, p)"
+        elif "positional argument" in message:
+            given = "(state, phase, p, contact)" if label == "motion" else "(state, phase, p)"
             hint = f"; it is called with {given}"
-        raise PageError(f"{what}: {says}{hint}") from error
+        raise PageError(f"{label}: {message}{hint}") from error
     except (ValueError, ArithmeticError, IndexError, KeyError, AttributeError, NameError) as error:
-        raise PageError(f"{what}: {error}") from error
+        raise PageError(f"{label}: {error}") from error

@@ -70,14 +70,14 @@ class Pattern:
         e = equations
         unknown = {j: variable(f"force_{e.contacts[j].name}") for j in (*stuck, *held)}
         sliding = [j for j in e.velocity if j not in stuck]
-        known = {j: constant(0.0) if j in absent else -e.limit[j] * e.sign[j] for j in sliding}
-        base = e.motion_with({**known, **{j: unknown[j] for j in stuck}})
+        sliding_forces = {j: constant(0.0) if j in absent else -e.limit[j] * e.sign[j] for j in sliding}
+        base = e.motion_with({**sliding_forces, **{j: unknown[j] for j in stuck}})
         for j in held:
             base = [r + d * unknown[j] for r, d in zip(base, e.push[j])]
         conditions = [e.along(e.velocity[j], base) for j in stuck]
         conditions += [e.along(e.gap_rate(j), base) for j in held]
         solved, self.mobility = _solved(conditions, unknown)
-        self.forces: dict[int, Symbol] = {**known, **solved}
+        self.forces: dict[int, Symbol] = {**sliding_forces, **solved}
         rates = e.motion_with({j: f for j, f in self.forces.items() if j not in held})
         for j in held:
             rates = [r + d * self.forces[j] for r, d in zip(rates, e.push[j])]
@@ -215,26 +215,26 @@ class Equations:
         return self.motion_with(dict.fromkeys(self.velocity, constant(0.0)))
 
     # ------------------------------------------------------------------ reading the page
-    def value(self, function: object, what: str) -> Symbol:
+    def value(self, function: object, label: str) -> Symbol:
         """Return a function of (state, phase, p) as a symbol."""
-        return self._symbol(called(what, function, self.state, self.phase, self.p), what)
+        return self._symbol(called(label, function, self.state, self.phase, self.p), label)
 
-    def quantity(self, given: object, what: str) -> Symbol:
+    def quantity(self, given: object, label: str) -> Symbol:
         """Return a number, the parameter of a name, or a function of (state, phase, p), as a symbol."""
         if isinstance(given, str):
             try:
                 return getattr(self.p, given)
             except PageError as error:
-                raise PageError(f"{what} = {given!r} is no parameter ({error})") from None
-        return self.value(given, what) if callable(given) else self._symbol(given, what)
+                raise PageError(f"{label} = {given!r} is no parameter ({error})") from None
+        return self.value(given, label) if callable(given) else self._symbol(given, label)
 
-    def _symbol(self, value: object, what: str) -> Symbol:
+    def _symbol(self, value: object, label: str) -> Symbol:
         if isinstance(value, Symbol):
             return value
         with suppress(TypeError, ValueError):
             if isinstance(value, SupportsFloat):
                 return constant(float(value))
-        raise PageError(f"{what} is {value!r}; it must be one formula or number")
+        raise PageError(f"{label} is {value!r}; it must be one formula or number")
 
     def motion_with(self, forces: Mapping[int, Symbol]) -> list[Symbol]:
         """Return the rates of the states with these friction forces; switches have their signs."""
@@ -256,26 +256,26 @@ class Equations:
                 f"motion returns {len(rates)} rate{'s' if len(rates) != 1 else ''} for {len(self.states)} states "
                 f"({', '.join(self.states)}); return one rate per state, in their order"
             )
-        told = [self._symbol(rate, f"motion's rate of {name}") for rate, name in zip(rates, self.states)]
-        return [rate / self.factors.get(name, 1.0) for rate, name in zip(told, self.states)]
+        in_si = [self._symbol(rate, f"motion's rate of {name}") for rate, name in zip(rates, self.states)]
+        return [rate / self.factors.get(name, 1.0) for rate, name in zip(in_si, self.states)]
 
-    def _in_si(self, name: str, shown: Symbol) -> Symbol:
+    def _in_si(self, name: str, value: Symbol) -> Symbol:
         """Return a parameter or state as the formulas receive it."""
-        return shown * self.factors.get(name, 1.0)
+        return value * self.factors.get(name, 1.0)
 
     def formulas(self) -> Iterator[tuple[str, str, int, Mapping[int, Symbol]]]:
         """Yield the formulas of each contact: description, kind of formula, contact, and this kind's formulas of all contacts."""
         kinds = ("gap", "restitution", "velocity", "limit", "surface")
         for j, contact in enumerate(self.contacts):
-            for what in kinds:
-                if j in (table := getattr(self, what)):
-                    yield f"the {what} of {contact.described}", what, j, table
+            for kind in kinds:
+                if j in (table := getattr(self, kind)):
+                    yield f"the {kind} of {contact.described}", kind, j, table
 
     # ------------------------------------------------------------------ derivatives
     def along(self, value: Symbol, rates: Sequence[Symbol]) -> Symbol:
         """Return the time derivative of a quantity along a flow."""
-        by = self.x if self.phase_rate is None else [*self.x, self.clock]
-        (slopes,) = derivatives([value], by)
+        variables = self.x if self.phase_rate is None else [*self.x, self.clock]
+        (slopes,) = derivatives([value], variables)
         total = slopes[0] * rates[0]
         for slope, rate in zip(slopes[1:], rates[1:]):
             total = total + slope * rate

@@ -77,21 +77,21 @@ class Possible:
         self._asked: dict[str | None, tuple[list[Demand], Values]] = {}
         self._passed = b""  # the last parameter vector that was tested and is possible
 
-    def wrong(self, params: np.ndarray, alone: str | None = None) -> str:
+    def wrong(self, params: np.ndarray, single: str | None = None) -> str:
         """Return a sentence on the first demand that is not met; empty if all are.
 
         Parameters
         ----------
         params : float array (P,)
-        alone : str, optional
+        single : str, optional
             Test only demands that depend on this parameter alone.
         """
-        if alone is None and params.tobytes() == self._passed:
+        if single is None and params.tobytes() == self._passed:
             return ""
-        if alone not in self._asked:
-            demands = [one for one in self.demands if alone is None or one.parameters == {alone}]
-            self._asked[alone] = demands, Values(self.equations.layout, [one.value for one in demands])
-        demands, formulas = self._asked[alone]
+        if single not in self._asked:
+            demands = [one for one in self.demands if single is None or one.parameters == {single}]
+            self._asked[single] = demands, Values(self.equations.layout, [one.value for one in demands])
+        demands, formulas = self._asked[single]
         if not demands:
             return ""
         draws = Draws(self.equations, params)
@@ -100,18 +100,20 @@ class Possible:
         for demand, values in zip(demands, table.T):
             if not demand.holds(values).any():
                 return self._sentence(demand, dict(zip(self.names, params.tolist())))
-        if alone is None:
+        if single is None:
             self._passed = params.tobytes()
         return ""
 
     def _sentence(self, demand: Demand, values: Mapping[str, float]) -> str:
         """Return the sentence on a demand; it names the parameters that are not above zero, or else all that enter the formula."""
-        known = [name for name in self.names if name in demand.parameters]
-        blamed = ([name for name in known if values[name] <= 0.0] or known)[:SHOWN]
-        told = ", ".join(f"{name} = {values[name]:g} {self.units.get(name, '')}".rstrip() for name in blamed)
-        if not told:
+        names = [name for name in self.names if name in demand.parameters]
+        blamed = ([name for name in names if values[name] <= 0.0] or names)[:SHOWN]
+        values_text = ", ".join(
+            f"{name} = {values[name]:g} {self.units.get(name, '')}".rstrip() for name in blamed
+        )
+        if not values_text:
             return f"it must hold that {demand.rule}"
-        return f"{told} {'are' if len(blamed) > 1 else 'is'} out of range: {demand.rule}"
+        return f"{values_text} {'are' if len(blamed) > 1 else 'is'} out of range: {demand.rule}"
 
 
 def _rooms(e: Equations, units: Mapping[str, str]) -> list[Demand]:
@@ -165,10 +167,10 @@ def _contacts(e: Equations) -> list[Demand]:
         rule = f"an impulse at {e.contacts[j].described} changes the rate of its gap by a number"
         found.append(Demand(effect, np.isfinite, rule))
     for j in e.force:
-        what = e.contacts[j].described
-        found.append(Demand(e.limit[j], lambda x: x >= 0.0, f"the limit of {what} is 0 or above"))
-        alone = replaced(e.friction_effect(j), e.without_forces)
-        found.append(Demand(alone, _open, f"a force along the velocity of {what} makes it faster"))
+        label = e.contacts[j].described
+        found.append(Demand(e.limit[j], lambda x: x >= 0.0, f"the limit of {label} is 0 or above"))
+        acceleration = replaced(e.friction_effect(j), e.without_forces)
+        found.append(Demand(acceleration, _open, f"a force along the velocity of {label} makes it faster"))
     return found
 
 
@@ -194,17 +196,17 @@ def singular_at(
     at = ", ".join(f"{name} = {value:.6g}" for name, value in zip(equations.states, state))
     if equations.phase_rate is not None:
         at += f", phase = {clock:.6g}"
-    for what, formula in _on_numbers(equations, params, modes, state, clock):
+    for label, formula in _on_numbers(equations, params, modes, state, clock):
         with np.errstate(divide="raise", invalid="raise", over="ignore"):
             try:
                 formula()
             except (ArithmeticError, ValueError) as error:
-                return f"{what} has {_named(error)}{_line(error)} at {at}"
-    for what, symbols in _on_symbols(equations, modes):
+                return f"{label} has {_named(error)}{_line(error)} at {at}"
+    for label, symbols in _on_symbols(equations, modes):
         numbers = np.concatenate([params, equations.signs(modes)])
         slopes = [slope for row in derivatives(symbols, equations.x) for slope in row]
         if not np.isfinite(Values(equations.layout, slopes).one(state, clock, numbers)).all():
-            return f"{what} has no slopes (a root of zero, or the like) at {at}"
+            return f"{label} has no slopes (a root of zero, or the like) at {at}"
     return ""
 
 
@@ -232,15 +234,15 @@ def _on_numbers(
             given = {"the velocity": contact.velocity, "the limit": contact.limit}
         else:
             given = {"the surface": contact.surface}
-        for what, function in given.items():
+        for kind, function in given.items():
             if callable(function):
-                yield f"{what} of {contact.described}", lambda f=function: f(*arguments)
+                yield f"{kind} of {contact.described}", lambda f=function: f(*arguments)
 
 
 def _on_symbols(e: Equations, modes: Sequence[int]) -> Iterator[tuple[str, list[Any]]]:
     yield "motion", e.pattern(e.pattern_key(modes)).rates
-    for name, what, j, table in e.formulas():
-        if what in ("gap", "velocity", "surface"):
+    for name, kind, j, table in e.formulas():
+        if kind in ("gap", "velocity", "surface"):
             yield name, [table[j]]
 
 
@@ -248,7 +250,7 @@ def _named(error: Exception) -> str:
     text = str(error)
     if isinstance(error, ZeroDivisionError):
         return FAILS["divide"]
-    return next((said for word, said in FAILS.items() if word in text), text)
+    return next((reason for word, reason in FAILS.items() if word in text), text)
 
 
 def _line(error: Exception) -> str:

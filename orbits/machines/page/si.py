@@ -44,14 +44,14 @@ class Units:
 
     def __init__(
         self,
-        said: Mapping[str, str] | None,
+        units: Mapping[str, str] | None,
         states: Sequence[str],
         parameters: Sequence[str],
         phase_rate: str | None,
     ) -> None:
-        if not isinstance(said or {}, Mapping):
-            raise PageError(f"units = {said!r} must have a unit for each name, for example {{'gap': 'mm'}}")
-        self.said, self.factors = dict(said or {}), {}
+        if not isinstance(units or {}, Mapping):
+            raise PageError(f"units = {units!r} must have a unit for each name, for example {{'gap': 'mm'}}")
+        self.said, self.factors = dict(units or {}), {}
         for name, unit in self.said.items():
             if name not in (*states, *parameters):
                 hint = did_you_mean(name, [*states, *parameters])
@@ -75,7 +75,7 @@ class Units:
 
         No parameter is a length of more than `LONGEST` typical lengths. A typical speed is a typical length times the rate (radians per second).
         """
-        unit = {name: size(said, "m") for name, said in self.said.items()}
+        unit = {name: size(text, "m") for name, text in self.said.items()}
         own = [unit[name] for name in states if unit.get(name)]
         if not own:
             return np.ones(len(states))
@@ -98,13 +98,13 @@ class Units:
         PageError
         """
         kinds = {f"x_{name}": name for name in e.states} | {f"p_{name}": name for name in e.p.__dict__}
-        for table, what in ((e.gap, "gap"), (e.velocity, "velocity")):
+        for table, kind in ((e.gap, "gap"), (e.velocity, "velocity")):
             for j, value in table.items():
                 names = [kinds[term] for term in _terms(value) if kinds.get(term) in self.said]
                 for one, other in pairwise(names):
                     if size(self.said[one], self.said[other]) is None:
                         raise PageError(
-                            f"units: the {what} of {e.contacts[j].described} adds {one} in {self.said[one]!r} to {other} in "
+                            f"units: the {kind} of {e.contacts[j].described} adds {one} in {self.said[one]!r} to {other} in "
                             f"{self.said[other]!r}; give units of one kind"
                         )
         for name, rate in zip(e.states, e.still):

@@ -65,15 +65,15 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Phys
     """
     base = model_class(name)
     table = tables(base)
-    known = table.quantities
+    quantities = table.quantities
     counted: dict[str, tuple[float, str]] = {}
     values: dict[str, float] = {}
     for key, value in given.items():
-        quantity = CONTACT if key == CONTACT.name else known.get(key)
+        quantity = CONTACT if key == CONTACT.name else quantities.get(key)
         if quantity is None:
             raise QuantityError(
-                f"{key} = {value!r}: the machine {name!r} has no such quantity{near_quantity(key, known)}; "
-                f"it has {', '.join(known)}"
+                f"{key} = {value!r}: the machine {name!r} has no such quantity{near_quantity(key, quantities)}; "
+                f"it has {', '.join(quantities)}"
             )
         if isinstance(value, str) and key in base.parameter_names:
             value = base.parameter(key).words.get(value, value)
@@ -83,7 +83,7 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Phys
         if not unusual:
             units.check_usual(quantity, values[key], f"{key} = {value!r}")
     contact_time = values.pop(CONTACT.name, None)
-    chosen = independent(known, values)
+    chosen = independent(quantities, values)
     values = table.completed(values)
     for quantity in chosen:
         unit = units.unit_of(quantity)
@@ -91,10 +91,12 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Phys
             counted.setdefault(quantity.name, (values[quantity.name] / units.si(quantity, 1.0, unit), unit))
             continue
         if quantity.default is None:
-            others = [q.name for q in known.values() if q.choice == quantity.choice and q is not quantity]
-            said = f" (or {', '.join(others)} instead)" if others else ""
-            would = f'"{quantity.example}"' if quantity.unit else quantity.example
-            raise QuantityError(f"{quantity.name} is missing{said}: for example {would}")
+            others = [
+                q.name for q in quantities.values() if q.choice == quantity.choice and q is not quantity
+            ]
+            others_text = f" (or {', '.join(others)} instead)" if others else ""
+            example = f'"{quantity.example}"' if quantity.unit else quantity.example
+            raise QuantityError(f"{quantity.name} is missing{others_text}: for example {example}")
         counted[quantity.name] = units.read(quantity, quantity.default)
     return _assembled(base, chosen, counted, unusual, contact_time)
 
@@ -107,15 +109,15 @@ def _assembled(
     contact_time: float | None,
 ) -> Physical:
     """Return the machine with these quantities, each given in a unit."""
-    said = tuple(counted[q.name][1] for q in chosen)
-    sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, said)])
+    units_given = tuple(counted[q.name][1] for q in chosen)
+    sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, units_given)])
     basis = Basis(chosen, (*base.parameter_names, *tables(base).scales), sizes)
     amounts = np.array([counted[q.name][0] for q in chosen])
     numbers = dict(zip(basis.numbers, products(basis.law, amounts).tolist()))
-    machine = _made(base, numbers, basis, amounts, said, unusual, contact_time)
+    machine = _made(base, numbers, basis, amounts, units_given, unusual, contact_time)
     if not unusual:
-        told = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
-        check_ratios(numbers, told)
+        texts = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
+        check_ratios(numbers, texts)
     return machine
 
 
@@ -151,8 +153,8 @@ def _class_of(base: type[Model]) -> type[Physical]:
         "table": (*base.table, *(Parameter(name, "a scale", POSITIVE, name) for name in scales)),
         "tables": tables(base),
     }
-    made = type(f"Physical{base.__name__}", (Physical, base), body)
-    return dataclass(frozen=True, kw_only=True)(made)
+    new_class = type(f"Physical{base.__name__}", (Physical, base), body)
+    return dataclass(frozen=True, kw_only=True)(new_class)
 
 
 class Physical(Model):
@@ -228,9 +230,9 @@ class Physical(Model):
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
         """Return the parameter vector; text is a quantity (``frequency="7.9 Hz"``), a number is one of the dimensionless numbers."""
         given = dict(values or {})
-        told = [name for name in given if isinstance(given[name], str) and name in self.tables.quantities]
-        if told:
-            return self.with_(**{name: given.pop(name) for name in told}).vector(given)
+        texts = [name for name in given if isinstance(given[name], str) and name in self.tables.quantities]
+        if texts:
+            return self.with_(**{name: given.pop(name) for name in texts}).vector(given)
         return super().vector({**self.loose, **given})
 
     def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
@@ -258,9 +260,9 @@ class Physical(Model):
         """
         if self.unusual:
             return
-        told = {**self._texts, name: units.text(value, self.units.get(name, ""))}
+        texts = {**self._texts, name: units.text(value, self.units.get(name, ""))}
         numbers = self.named(self.vector_at(name, value))
-        check_ratios(numbers, {key: str(text) for key, text in told.items()}, wide=True)
+        check_ratios(numbers, {key: str(text) for key, text in texts.items()}, wide=True)
 
     def shakes(self, name: str) -> bool:
         return name in self.tables.quantities and self.driven_by in self.tables.quantities[name].powers
@@ -273,10 +275,12 @@ class Physical(Model):
 
     def with_(self, **changes: str | float) -> Physical:
         """Return the machine with other quantities, as text or as numbers in their units in `units`."""
-        known = self.tables.quantities
-        groups = {known[name].choice for name in changes if name in known}
+        quantities = self.tables.quantities
+        groups = {quantities[name].choice for name in changes if name in quantities}
         own = {
-            n: value for n, value in self._texts.items() if n not in known or known[n].choice not in groups
+            n: value
+            for n, value in self._texts.items()
+            if n not in quantities or quantities[n].choice not in groups
         }
         counted = {
             name: units.text(float(value), self.units[name])
@@ -294,11 +298,13 @@ class Physical(Model):
         ParameterError
             If the machine has no such quantity.
         """
-        known = self.tables.quantities
-        if name in self.amount_names or name not in known:
+        quantities = self.tables.quantities
+        if name in self.amount_names or name not in quantities:
             self.place_of(name)
             return self
-        chosen = tuple(known[name] if q.choice == known[name].choice else q for q in self.basis.quantities)
+        chosen = tuple(
+            quantities[name] if q.choice == quantities[name].choice else q for q in self.basis.quantities
+        )
         params = self.vector({})
         ones = Basis(chosen, self.basis.numbers, np.ones(len(chosen)))
         units_ = {q.name: self.units.get(q.name) or units.unit_of(q) for q in chosen}
@@ -306,8 +312,8 @@ class Physical(Model):
             q.name: (float(value) / units.si(q, 1.0, units_[q.name]), units_[q.name])
             for q, value in zip(chosen, ones.amounts_of(params))
         }
-        kept = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
-        counts = {**counted, **kept}
+        given = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
+        counts = {**counted, **given}
         return _assembled(self.base, chosen, counts, self.unusual, self.contact_time)
 
     @property

@@ -157,10 +157,10 @@ OTHERWISE = {
 }
 
 
-def near_quantity(given: str, known: Collection[str]) -> str:
+def near_quantity(given: str, names: Collection[str]) -> str:
     """Return " (did you mean ...?)" if a quantity has another or a similar name, else an empty text."""
     other = OTHERWISE.get(given.lower())
-    return f" (did you mean {other!r}?)" if other in known else did_you_mean(given, known)
+    return f" (did you mean {other!r}?)" if other in names else did_you_mean(given, names)
 
 
 def gauges(mass: Mapping[str, float]) -> dict[str, Quantity]:

@@ -78,10 +78,10 @@ _SHAKEN = _by_name(
 _SIDES = {"restitution": _RESTITUTION, "friction": _FRICTION}
 
 
-def _of_sides(both: Quantity) -> tuple[Quantity, ...]:
+def _of_sides(shared: Quantity) -> tuple[Quantity, ...]:
     """Return a quantity for both sides and the ratio right over left, or one quantity for each side."""
-    name, (left, right) = both.name, (f"{both.name}_left", f"{both.name}_right")
-    one, other = replace(both, powers={left: 1}, group=left), replace(both, powers={right: 1}, group=right)
+    name, (left, right) = shared.name, (f"{shared.name}_left", f"{shared.name}_right")
+    one, other = replace(shared, powers={left: 1}, group=left), replace(shared, powers={right: 1}, group=right)
     ratio = Quantity(f"{right}_over_left", "", "1", {right: 1, left: -1}, _RATIO, f"the ratio of the sides' {name}", group=right, default=1.0)
     return one, replace(one, name=left), ratio, replace(other, name=right)
 

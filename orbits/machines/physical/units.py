@@ -116,32 +116,32 @@ def read(quantity: Quantity, value: object) -> tuple[float, str]:
     QuantityError
         If it is no number with a unit of this kind.
     """
-    shown = f"{quantity.name} = {value!r}"
-    would = f'for example "{quantity.example}"' if quantity.unit else f"for example {quantity.example}"
+    given = f"{quantity.name} = {value!r}"
+    hint = f'for example "{quantity.example}"' if quantity.unit else f"for example {quantity.example}"
     if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise QuantityError(f"{shown} is no quantity; {would}{_many(quantity, value)}")
+        raise QuantityError(f"{given} is no quantity; {hint}{_many(quantity, value)}")
     if not isinstance(value, str):
         if quantity.unit and value != 0:
-            raise QuantityError(f"{shown} has no unit; {would}")
-        return _finite(quantity, float(value), shown, would), unit_of(quantity)
-    number, unit = _parsed(quantity.name, value, quantity.unit, would + _many(quantity, value), would)
+            raise QuantityError(f"{given} has no unit; {hint}")
+        return _finite(quantity, float(value), given, hint), unit_of(quantity)
+    number, unit = _parsed(quantity.name, value, quantity.unit, hint + _many(quantity, value), hint)
     if not quantity.unit:
         factor = size(unit, "") if unit else 1.0
         if factor is None:
-            raise QuantityError(f"{shown}: {quantity.name} is a plain number; {would}")
-        return _finite(quantity, number * factor, shown, would), ""
+            raise QuantityError(f"{given}: {quantity.name} is a plain number; {hint}")
+        return _finite(quantity, number * factor, given, hint), ""
     factor = size(unit, quantity.unit)
     if factor is None:
         kind = _KINDS.get(quantity.unit, quantity.unit)
-        other = next((name for known, name in _KINDS.items() if size(unit, known) is not None), None)
+        other = next((name for kind_unit, name in _KINDS.items() if size(unit, kind_unit) is not None), None)
         meant = _meant(unit, quantity)
         if other is None:
             raise QuantityError(
-                f"{shown}: {unit!r} is no unit of {_with_article(kind)}{meant}; {would}{_many(quantity, value)}"
+                f"{given}: {unit!r} is no unit of {_with_article(kind)}{meant}; {hint}{_many(quantity, value)}"
             )
-        what = f"{unit!r} is the unit of {_with_article(other)}{meant}"
-        raise QuantityError(f"{shown}: {what}, but {quantity.name} is {_with_article(kind)}; {would}")
-    return _finite(quantity, number, shown, would), unit
+        fault = f"{unit!r} is the unit of {_with_article(other)}{meant}"
+        raise QuantityError(f"{given}: {fault}, but {quantity.name} is {_with_article(kind)}; {hint}")
+    return _finite(quantity, number, given, hint), unit
 
 
 def number_and_unit(value: str) -> tuple[float, str]:
@@ -174,12 +174,12 @@ def counted(name: str, value: str, own: str) -> float:
     QuantityError
         If it is no number with a unit of this kind.
     """
-    would = f'for example "1 {own}"' if own else "expected a plain number"
-    number, unit = _parsed(name, value, own, would, would)
+    hint = f'for example "1 {own}"' if own else "expected a plain number"
+    number, unit = _parsed(name, value, own, hint, hint)
     factor = size(unit, own) if unit else 1.0
     if factor is None:
-        what = f"shown in {own}" if own else "a plain number"
-        raise QuantityError(f"{name} = {value!r}: {name} is {what}; {would}")
+        expected = f"shown in {own}" if own else "a plain number"
+        raise QuantityError(f"{name} = {value!r}: {name} is {expected}; {hint}")
     return number * factor
 
 
@@ -187,9 +187,9 @@ def _parsed(name: str, value: str, kind: str, otherwise: str, with_unit: str) ->
     """Return number and unit of a text; `otherwise` and `with_unit` are hints for errors (no number; unit of kind `kind` missing)."""
     match = _NUMBER.fullmatch(value)
     if match is None:
-        what = "a number with a unit" if kind else "a number"
+        expected = "a number with a unit" if kind else "a number"
         comma = " (decimals stand behind a point)" if _COMMA.match(value) else ""
-        raise QuantityError(f"{name} = {value!r} is not {what}{comma}; {otherwise}")
+        raise QuantityError(f"{name} = {value!r} is not {expected}{comma}; {otherwise}")
     if kind and not match[2]:
         raise QuantityError(f"{name} = {value!r} has no unit; {with_unit}")
     return float(match[1]), match[2]
@@ -205,11 +205,11 @@ def _many(quantity: Quantity, value: object) -> str:
 def _meant(unit: str, quantity: Quantity) -> str:
     """Return " (did you mean ...?)" if a usual unit differs in capitals or in one letter, else an empty text."""
     usual = [unit_of(quantity), *_USUAL.get(quantity.unit, ())]
-    alike = [one for one in usual if one.lower() == unit.lower()]
-    alike += [one for one in usual if len(one) == len(unit) > 1 and sum(map(str.__ne__, one, unit)) == 1]
+    similar = [one for one in usual if one.lower() == unit.lower()]
+    similar += [one for one in usual if len(one) == len(unit) > 1 and sum(map(str.__ne__, one, unit)) == 1]
     if unit == "g" and quantity.unit == "m/s^2":  # which is a gram
-        alike = ["g_0"]
-    return f" (did you mean {alike[0]!r}?)" if alike else ""
+        similar = ["g_0"]
+    return f" (did you mean {similar[0]!r}?)" if similar else ""
 
 
 def _with_article(kind: str) -> str:
@@ -234,7 +234,7 @@ def text(value: float, unit: str) -> str | float:
     return f"{value!r} {unit}" if unit else value
 
 
-def check_usual(quantity: Quantity, value: float, shown: str) -> None:
+def check_usual(quantity: Quantity, value: float, given: str) -> None:
     """Check that a value is in the range of real machines.
 
     Raises
@@ -249,7 +249,7 @@ def check_usual(quantity: Quantity, value: float, shown: str) -> None:
     factor = si(quantity, 1.0, unit)
     ends = f"{low / factor:.6g} to {high / factor:.6g}{' ' + unit if unit else ''}"
     raise QuantityError(
-        f"{shown} is implausible for {quantity.meaning}: expected {ends}; if it is meant, say unusual = true in [model]"
+        f"{given} is implausible for {quantity.meaning}: expected {ends}; if it is meant, say unusual = true in [model]"
     )
 
 
@@ -261,10 +261,10 @@ def check_limits(quantity: Quantity, number: float, unit: str, limits: Mapping[s
     QuantityError
         With the limits in this unit.
     """
-    of = next(iter(quantity.powers), "")
-    if quantity.powers != {of: 1} or quantity.constant != 1.0 or of not in limits:
+    parameter = next(iter(quantity.powers), "")
+    if quantity.powers != {parameter: 1} or quantity.constant != 1.0 or parameter not in limits:
         return
-    limit = limits[of]
+    limit = limits[parameter]
     if si(quantity, number, unit) not in limit:
         factor = si(quantity, 1.0, unit)
         allowed = Limits(limit.low / factor, limit.high / factor, limit.open).text
@@ -273,12 +273,12 @@ def check_limits(quantity: Quantity, number: float, unit: str, limits: Mapping[s
         )
 
 
-def _finite(quantity: Quantity, value: float, shown: str, would: str) -> float:
+def _finite(quantity: Quantity, value: float, given: str, hint: str) -> float:
     if not math.isfinite(value):
-        raise QuantityError(f"{shown} is not finite; {would}")
+        raise QuantityError(f"{given} is not finite; {hint}")
     if quantity.signed:
         return value
     if value < 0.0 or (value == 0.0 and not quantity.zero):
         rule = "0 or above" if quantity.zero else "above 0"
-        raise QuantityError(f"{shown} is out of range; give a value {rule}, {would}")
+        raise QuantityError(f"{given} is out of range; give a value {rule}, {hint}")
     return value

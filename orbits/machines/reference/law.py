@@ -149,13 +149,13 @@ def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: 
     drag, stiffness = damping * omega, 1.0 - mass * omega * omega
     scale = force / (stiffness * stiffness + drag * drag)
     X, Y = scale * (stiffness + chi * drag * drag), scale * drag * (chi * stiffness - 1.0)
-    still = np.real(force) == 0.0
+    unforced = np.real(force) == 0.0
     alpha = 0.5 * damping / mass
     square = 1.0 / mass - alpha * alpha
     beta = np.sqrt(where(np.real(square) > 0.0, square, np.nan * square))
     return Response(
-        where(still & ~np.isfinite(X), 0.0 * force, X),
-        where(still & ~np.isfinite(Y), 0.0 * force, Y),
+        where(unforced & ~np.isfinite(X), 0.0 * force, X),
+        where(unforced & ~np.isfinite(Y), 0.0 * force, Y),
         alpha,
         beta,
     )

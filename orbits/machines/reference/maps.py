@@ -83,8 +83,8 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
     phase = np.repeat(following[None, :, 0].astype(complex), size, axis=0)
     phase[n] += 1j * COMPLEX_STEP
     law = law_of([*numbers])
-    arrival, then = np.roll(events, -1), np.roll(modes, -1)
-    then[-1] *= twist
+    arrival, next_modes = np.roll(events, -1), np.roll(modes, -1)
+    next_modes[-1] *= twist
     if twist < 0.0 and events[0] < 2:
         arrival[-1] = 1 - events[0]
     hit = events < 2
@@ -103,7 +103,7 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
         y = y + np.where(np.arange(length) == length - 1, law.left + law.right, 0.0)
     from_rest = (events >= 2) & (modes != 0)
     stops = np.where(from_rest, point.mean - q.q2_pull, end.rate)
-    slips = law.whole * (point.h2 + point.z2 - chosen(then, law.pull_left, law.pull_right, 0.0))
+    slips = law.whole * (point.h2 + point.z2 - chosen(next_modes, law.pull_left, law.pull_right, 0.0))
     back = end.v_rate + np.where(left, law.restitution_left, law.restitution_right) * end.rate - y
     place_ = end.w - np.where(left, law.left, law.right)
     sign = -1.0 if law.prescribed else 1.0

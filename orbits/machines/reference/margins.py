@@ -107,8 +107,8 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
             if shaken:
                 rate = after(law, q, q.at(d), begin, mode, d).rate
             else:  # by Newton's law w'+ = -r w'-, and B+ = v' - w'+
-                told = nodes[following, 1] - nodes[following, 3]
-                rate = (1.0 if inner else twist) * told / law.side(side).restitution
+                arrival_rate = nodes[following, 1] - nodes[following, 3]
+                rate = (1.0 if inner else twist) * arrival_rate / law.side(side).restitution
             out[4 * following + 1] = side * rate
 
 

@@ -100,7 +100,9 @@ class Oscillation:
         h, z = self.derivatives()
         d = [a + b for a, b in zip(h, z)]
         mean, bend = d[2] + _beyond(d, 1, tau), tau * _beyond(d, 0, tau)
-        h2, z2, h3, z3 = (of[k] + tau * (of[k + 1] + _beyond(of, k, tau)) for k in (2, 3) for of in (h, z))
+        h2, z2, h3, z3 = (
+            series[k] + tau * (series[k + 1] + _beyond(series, k, tau)) for k in (2, 3) for series in (h, z)
+        )
         return Point(tau * d[1] + bend, tau * mean, mean, h2, z2, h3, z3, bend)
 
     def _far(self, tau: Number) -> Point:

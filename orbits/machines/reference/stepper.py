@@ -78,8 +78,8 @@ def shift(w, low, step):
     total = w + step
     virtual = total - w
     rest = (w - (total - virtual)) + (step - virtual) + low
-    out = total + rest
-    return out, rest - (out - total)
+    rounded = total + rest
+    return rounded, rest - (rounded - total)
 
 
 def launch(law: Law, state: np.ndarray) -> None:
@@ -152,11 +152,11 @@ class Run:
                 status = TIME_REACHED
                 break
             if state[MODE] == 0.0:
-                outcome, way = self._wait(left)
+                outcome, direction = self._wait(left)
                 if outcome != _SLIPS:
                     status = REST if outcome == _NEVER else TIME_REACHED
                     break
-                state[MODE], fresh = way, True
+                state[MODE], fresh = direction, True
                 if not law.frictionless or state[W] in (law.left, law.right):
                     add(_U, 0.0, 0.0)
                 continue
@@ -227,15 +227,15 @@ class Run:
         else:
             bent = rest < STEPPING.chatter and rest * abs(begin.h3 + begin.z3) < 0.01 * back
             longest = STEPPING.chatter
-        still = STEPPING.still * self.speed > Y0
-        if not (still or (bent and factor < 1.0)):
+        slow = STEPPING.still * self.speed > Y0
+        if not (slow or (bent and factor < 1.0)):
             return math.inf
-        return rest if law.prescribed and not still else min(rest, longest)
+        return rest if law.prescribed and not slow else min(rest, longest)
 
-    def _ride(self, way: float, speed: float) -> None:
+    def _ride(self, travel: float, speed: float) -> None:
         """Move the centre of mass on, if the cavity is an oscillator."""
         if not self.law.prescribed:
-            self.state[V] += way
+            self.state[V] += travel
             self.state[V_RATE] += speed
 
     def _turn(self, tau: float) -> None:
@@ -246,40 +246,42 @@ class Run:
     def _wait(self, left: float) -> tuple[int, float]:
         """Move on, sticking, until friction yields, or for the time `left`; return the reason for the end, and the direction of the slip."""
         q, whole = oscillation(self.state, self.law), self.law.whole
-        outcome, tau, way = self._until_slip(q, left)
+        outcome, tau, direction = self._until_slip(q, left)
         if tau > 0.0:
             at = q.at(tau)
             self._ride(whole * at.way, whole * at.speed)
             self._turn(tau)
         self.state[RATE] = 0.0
-        return outcome, way
+        return outcome, direction
 
     def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, float]:
         b, whole = self.b, self.law.whole
         # directions without a wall, and the friction in each
         free_ways = [
-            (way, side.friction) for way, side in self.sides.items() if way * self.state[W] < side.reach
+            (direction, side.friction)
+            for direction, side in self.sides.items()
+            if direction * self.state[W] < side.reach
         ]
-        hold = min(a + way * b for way, a in free_ways)
+        hold = min(a + direction * b for direction, a in free_ways)
         tiny, tau = 2.0 * ROUNDOFF * (whole * (q.driven(2) + q.own(2, 0.0)) + abs(b)), 0.0
         while tau < left:
             if whole * (q.driven(2) + q.own(2, tau)) * (1.0 - EVENTS.zero) <= hold:
                 return _NEVER, left, 0.0
             end, bound = min(tau + _HORIZON, left), whole * (q.driven(4) + q.own(4, tau))
             slips = []
-            for way, a in free_ways:
+            for direction, a in free_ways:
 
-                def reserve(time: float, way: float = way, a: float = a) -> tuple[float, float]:
+                def reserve(time: float, direction: float = direction, a: float = a) -> tuple[float, float]:
                     at = q.at(time)
-                    return a - way * (whole * (at.h2 + at.z2) - b), -way * whole * (at.h3 + at.z3)
+                    return a - direction * (whole * (at.h2 + at.z2) - b), -direction * whole * (at.h3 + at.z3)
 
                 value, slope = reserve(tau)
                 # at a zero at the start the slope decides
-                now = value <= tiny and (tau > 0.0 or slope < 0.0 or value < -tiny)
-                slips.append((tau if now else first_zero(reserve, tau, end, bound, tiny), way))
-            slip, way = min(slips)
+                at_once = value <= tiny and (tau > 0.0 or slope < 0.0 or value < -tiny)
+                slips.append((tau if at_once else first_zero(reserve, tau, end, bound, tiny), direction))
+            slip, direction = min(slips)
             if slip < end:
-                return _SLIPS, slip, way
+                return _SLIPS, slip, direction
             tau = end
         return _TIME_IS_OVER, left, 0.0
 
