@@ -297,7 +297,7 @@ def study_schema() -> dict[str, Any]:
     kinds += [made for made in map(_physical, NAMES) if made is not None]
     kinds = [_with_conditions(kind) for kind in kinds]
     own = [
-        _own(inlined(PageSections), "a machine of a Python file"),
+        _own(_with_units(inlined(PageSections)), "a machine of a Python file"),
         _own(inlined(FlowSections), "a flow of a Python file"),
     ]
     return {
@@ -369,7 +369,6 @@ def _physical(name: str) -> dict[str, Any] | None:
         CONTACT.name: (Annotated[str | None, Field(description=contact)], None),
     }
     made = _with_units(inlined(study_model(StudySections, settings, fields)))
-    made["properties"]["units"] = {"const": "si"}
     said = {"required": ["units"]}
     return _titled(made, f"the machine {name} in physical units") | {
         "anyOf": [said, {"properties": {"model": said}}]
@@ -417,12 +416,16 @@ def _said_already(key: str, value: object) -> bool:
     )
 
 
-def _with_units(value: Any) -> Any:
-    """Allow texts with a unit in all lists of numbers of a schema, except in guesses."""
-    if isinstance(value, list):
-        return [_with_units(entry) for entry in value]
-    if not isinstance(value, dict):
-        return value
-    if value.get("items") == {"type": "number"}:
-        return value | {"items": {"type": ["number", "string"]}}
-    return {k: v if k == "guess" else _with_units(v) for k, v in value.items()}
+def _with_units(made: dict[str, Any]) -> dict[str, Any]:
+    """Allow ``units = "si"`` in the schema of a study, and texts with a unit in all its lists of numbers, except in guesses."""
+
+    def told(value: Any) -> Any:
+        if isinstance(value, list):
+            return [told(entry) for entry in value]
+        if not isinstance(value, dict):
+            return value
+        if value.get("items") == {"type": "number"}:
+            return value | {"items": {"type": ["number", "string"]}}
+        return {k: v if k == "guess" else told(v) for k, v in value.items()}
+
+    return told(made | {"properties": made["properties"] | {"units": {"const": "si"}}})

@@ -176,6 +176,36 @@ def made(target: Path, fingerprint: str, study: dict[str, Any], quiet: bool, mak
     return found
 
 
+def journal_of(target: Path) -> Path:
+    """Return the path of the journal of an unfinished sweep or survey."""
+    return target.with_name(target.name + ".unfinished")
+
+
+def refuse_another(target: Path, header: dict[str, str]) -> None:
+    """Raise an error if the journal beside a file has rows of another study, which would be lost.
+
+    Parameters
+    ----------
+    target : Path
+        The result's file.
+    header : dict
+        First line of this study's journal.
+
+    Raises
+    ------
+    ValueError
+        If it has.
+    """
+    from ..shared.row_journal import rows_of_another
+
+    count = rows_of_another(journal_of(target), header)
+    if count:
+        raise ValueError(
+            f"{target}: here {count} rows of an {header['contvines']} of another study (or of this one before it "
+            "was edited) are kept; --fresh sets them aside, -o gives another name."
+        )
+
+
 # ---------------------------------------------------------------------- results
 def load_file(file: Path, trust: bool = False, problems: bool = True) -> Graph:
     """Load the graph of a file; raise a ValueError for a chart."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from orbits.machines.physical import units
 
+from ..continuation.settings import Settings
 from ..graph.table import with_unit
 from ..shared.files import write_csv
 from ..shared.numbers import figures
@@ -141,18 +142,20 @@ def written(path: Path | None, series: Series, quiet: bool) -> None:
 
 @dataclass
 class Told:
-    """A transient in the study's units.
+    """Computed numbers and columns in the study's units: a transient, or a random response with standard errors.
 
     Attributes
     ----------
     title : str
     rows : list of (name, value, unit, words)
     series : list of (name, unit, float array)
-        The first is time.
+        The first is time, or frequency of a random response.
     hits : float array
         Times of impacts.
     drawn : int, optional
         Number of series in the picture.
+    errors : dict, optional
+        Standard error of each value, by name.
     """
 
     title: str
@@ -160,21 +163,44 @@ class Told:
     series: Series
     hits: np.ndarray | None = None
     drawn: int | None = None
+    errors: dict[str, float] | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers by name, and their units, ready for JSON."""
+        """Return the numbers (with standard errors if there are some) by name, and their units, ready for JSON."""
         units = {name: unit for name, _, unit, _ in self.rows if unit}
+        if (errors := self.errors) is not None:
+            return {name: {"value": x, "error": errors[name]} for name, x, _, _ in self.rows} | {
+                "units": units
+            }
         return {**{name: value for name, value, _, _ in self.rows}, **({"units": units} if units else {})}
 
     def __str__(self) -> str:
-        rows = [(name, figures(value), unit, words) for name, value, unit, words in self.rows]
-        return titled(self.title, Table(("figure", "value", "unit", "what it is"), rows))
+        errors = self.errors or {}
+        rows = [
+            (name, *_rounded(value, errors.get(name, math.nan)), unit, words)
+            for name, value, unit, words in self.rows
+        ]
+        return titled(
+            self.title, Table(("figure", "value", "+-" if errors else "", "unit", "what it is"), rows)
+        )
 
     def plot(self, figsize: tuple[float, float] | None = None) -> Figure:
-        """Plot the motion, or the energy, with and without the absorber; impacts are marked as ticks."""
-        from ..plots.measured import plot_transient
+        """Plot the motion, or the energy, with and without the absorber; impacts are marked as ticks. Of a random response plot the spectral densities."""
+        from ..plots.measured import plot_densities, plot_transient
 
-        return plot_transient(self.series[: self.drawn], self.hits, figsize=figsize)
+        if self.errors is None:
+            return plot_transient(self.series[: self.drawn], self.hits, figsize=figsize)
+        (_, hertz, frequencies), *densities = self.series
+        shown = {name: (values, unit) for name, unit, values in densities}
+        return plot_densities(frequencies, hertz, shown, figsize=figsize)
+
+
+def _rounded(value: float, error: float) -> tuple[str, str]:
+    """Format a number to the second digit of its error, and the error."""
+    if not (error > 0.0 and math.isfinite(error)) or error < Settings.located * abs(value):
+        return figures(value), "" if math.isnan(error) else "0"
+    digits = max(2, min(6, math.ceil(math.log10(max(abs(value), error) / error)) + 2))
+    return f"{value:.{digits}g}", f"{error:.2g}"
 
 
 def loads_rows(impulse: float, impacts: int, contact_time: float | None, shown: Mapping[str, str]) -> Rows:

@@ -145,6 +145,8 @@ def _counted(data: dict[str, Any], machine: Machine) -> dict[str, Any]:
     """
     from orbits.machines.physical.units import QuantityError, counted
 
+    from .physical_study import in_numbers
+
     units = {name: unit for name, unit in machine.units.items() if name in machine.parameters}
     said = data.get("units")
     if said is not None and said != "si":
@@ -156,30 +158,28 @@ def _counted(data: dict[str, Any], machine: Machine) -> dict[str, Any]:
     if not units:
         return data
 
-    def number(name: object, said: object, where: str) -> object:
+    def number(name: str | None, said: object, place: str, i: int | None = None) -> object:
         if isinstance(said, list):
-            return [number(name, one, where) for one in said]
+            return [number(name, one, place) for one in said]
         if isinstance(said, dict):  # of [survey] vary
-            return {key: number(name, one, where) for key, one in said.items()}
-        if not (isinstance(said, str) and isinstance(name, str) and name in units):
+            return {key: number(name, one, place) for key, one in said.items()}
+        if not (isinstance(said, str) and name in units):
             return said
         try:
             return counted(name, said, units[name])
         except QuantityError as error:
-            raise StudyError(f"{where}{error}.") from None
+            raise StudyError(f"{place}{'' if i is None else ': '}{error}.") from None
 
-    def numbers(section: dict[str, Any], where: str) -> dict[str, Any]:
-        return {name: number(name, said, where) for name, said in section.items()}
+    def numbers(section: dict[str, Any], place: str) -> dict[str, Any]:
+        return {name: number(name, said, place) for name, said in section.items()}
 
-    found = {name: value for name, value in data.items() if name != "units"}
+    wrong: list[str] = []
+    found = in_numbers(data, number, machine.units, wrong)
+    found.pop("units", None)
+    refuse(wrong)
     for section in ("model", "start"):
         if section in found:
             found[section] = numbers(_section(data, section), f"[{section}] ")
-    for section in ("continue", "chart"):
-        own = _section(data, section)
-        if "within" in own:
-            within = number(own.get("parameter"), own["within"], f"[{section}] within: ")
-            found[section] = {**own, "within": within}
     survey = _section(data, "survey")
     if isinstance(survey.get("vary"), dict):
         found["survey"] = {**survey, "vary": numbers(survey["vary"], "[survey] vary.")}

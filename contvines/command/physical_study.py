@@ -4,10 +4,9 @@ The quantities define a machine (`orbits.machines.physical`). Intervals and valu
 unit in which the machine's quantity is given; the rest is treated as in other studies.
 """
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from orbits.machines.names import model_class
 from orbits.machines.physical import units
@@ -16,7 +15,7 @@ from orbits.machines.physical.quantities import Quantity, QuantityError, near_qu
 
 from .catalogue_study import built, wrong_guess
 from .schema import StudySections
-from .study_data import Sort, Study, refuse, validated, wrong_intervals
+from .study_data import Sort, Study, refuse, refused, validated, wrong_intervals
 
 OWN = ("name", "units", "unusual", "contact_time")
 SAID = ("word", "periods", "guess")
@@ -33,13 +32,16 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
     model, start = data.get("model"), data.get("start", {})
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
     machine, wrong = None, []
+
+    def number(name: str | None, said: object, place: str, i: int) -> object:
+        if machine is not None and name in machine.tables.quantities:
+            return number_of(machine.given_by(name), name, said, f"{place}[{i}]")
+        return 0.0 if isinstance(said, str) else said  # why there is no such quantity is told already
+
     if isinstance(model, dict) and isinstance(start, dict):
         plain["start"] = {key: value for key, value in start.items() if key in SAID}
-        machine, wrong = _machine(data.get("units", model.get("units")), model, start, plain.get("continue"))
-        over = _parameter(plain.get("continue"))
-        for section, values in plain.items():
-            if isinstance(values, dict) and section not in ("start", "survey", "random"):
-                plain[section] = _numbers(machine, section, values, over, wrong)
+        machine, wrong = _machine(data.get("units", model.get("units")), model, start, plain)
+        plain = in_numbers(plain, number, None if machine is None else machine.units, wrong)
     file = validated(StudySections, plain, wrong)
     if machine is None and not wrong:
         wrong = ["the section [model] is missing; it holds the machine's name and its quantities."]
@@ -52,7 +54,7 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
 
 
 def _machine(
-    said: object, model: dict[str, Any], start: dict[str, Any], go: object
+    said: object, model: dict[str, Any], start: dict[str, Any], others: dict[str, Any]
 ) -> tuple[Physical | None, list[str]]:
     """Return the machine of `[model]` and `[start]` (None if it cannot be made) and all errors.
 
@@ -72,10 +74,16 @@ def _machine(
         for key, value in values.items()
         if key not in known and key not in extra
     ]
-    over = known.get(_parameter(go) or "")
+    varied = {section: _parameter(others.get(section)) for section in ("continue", "chart")}
+    wrong += [
+        f"[{section}] parameter = {over!r}: the model {name!r} has no such quantity{near_quantity(over, known)}; it has {', '.join(known)}."
+        for section, over in varied.items()
+        if over is not None and over not in known
+    ]
+    over = known.get(varied["continue"] or "")
     said_already = {known[key].choice for key in (*model, *start) if key in known}
     if over is not None and "word" not in start and over.choice not in said_already:
-        start = {**start, over.name: _middle(over, go)}
+        start = {**start, over.name: _middle(over, others["continue"])}
     # quantities in [start] replace those of the same choice in [model]
     groups = {known[key].choice for key in start if key in known}
     places = {key: "model" for key in model if key in known and known[key].choice not in groups}
@@ -95,7 +103,7 @@ def _parameter(section: object) -> str | None:
     return name if isinstance(name, str) else None
 
 
-def _middle(quantity: Quantity, go: object) -> object:
+def _middle(quantity: Quantity, go: dict[str, Any]) -> object:
     """Return the middle of the interval of `[continue]` as a quantity in the unit of its lower end; an invalid interval is returned unchanged.
 
     Raises
@@ -103,7 +111,7 @@ def _middle(quantity: Quantity, go: object) -> object:
     QuantityError
         If an end is no quantity of this kind.
     """
-    within = go.get("within") if isinstance(go, dict) else None
+    within = go.get("within")
     if not isinstance(within, list) or len(within) != 2:
         return within
     (low, unit), (high, other) = (units.read(quantity, end) for end in within)
@@ -112,54 +120,60 @@ def _middle(quantity: Quantity, go: object) -> object:
     )
 
 
-def _numbers(
-    machine: Physical | None, section: str, values: dict[str, Any], usual: str | None, wrong: list[str]
+def in_numbers(
+    data: dict[str, Any],
+    number: Callable[[str | None, object, str, int], object],
+    units_of: Mapping[str, str] | None,
+    wrong: list[str],
 ) -> dict[str, Any]:
-    """Convert the quantities in a section to numbers in the machine's unit of the varied quantity; add error messages to `wrong`.
+    """Return a study with the quantities in its intervals, lists of values and bounds as numbers.
 
-    Without a machine, or for invalid quantities, valid dummy numbers are inserted, so that each error is reported once.
+    Parameters
+    ----------
+    data : dict
+        The sections of the study.
+    number : callable
+        ``number(parameter, value, place, i)`` returns entry i of the list at a place (``"[continue] within"``) as a number, or unchanged for
+        later checks; it raises a ValueError with the message.
+    units_of : mapping or None
+        Units of measures, for the bounds; None if they are not known.
+    wrong : list of str
+        Messages of errors are added to it. Numbers are inserted in place of wrong quantities, so that each error is told once.
     """
-    changed, bounds = dict(values), values.get("bounds")
-    lists = {key: values[key] for key in ("within", "values") if isinstance(values.get(key), list)}
-    if machine is None:
-        if isinstance(bounds, dict):
-            del changed["bounds"]
-        unread = {key: texts for key, texts in lists.items() if any(isinstance(text, str) for text in texts)}
-        return changed | {key: [float(i) for i in range(len(texts))] for key, texts in unread.items()}
-    name, known = _parameter(values) or usual, machine.tables.quantities
-    if name is None:
-        return changed
-    if name in known:
-        given = machine.given_by(name)
-        sound = given.quantities.get(name) or 1.0
-        for key, texts in lists.items():
-            numbers, refused = [], []
-            for i, said in enumerate(texts):
-                try:
-                    numbers.append(number_of(given, name, said, f"[{section}] {key}[{i}]"))
-                except QuantityError as error:
-                    refused.append(str(error))
-            wrong += refused
-            changed[key] = np.linspace(0.5 * sound, sound, len(texts)).tolist() if refused else numbers
-    elif "parameter" in values:
-        wrong.append(
-            f"[{section}] parameter = {name!r}: the model {machine.name!r} has no such quantity"
-            f"{near_quantity(name, known)}; it has {', '.join(known)}."
-        )
-        changed["within"] = [0.0, 1.0]
-    if isinstance(bounds, dict):  # plain numbers are in the displayed units of the measures
-        changed["bounds"] = {}
-        for measure, pair in bounds.items():
-            changed["bounds"][measure] = list(pair) if isinstance(pair, list) else pair
-            for i, value in enumerate(pair if isinstance(pair, list) else []):
-                if isinstance(value, str):
-                    number = float(i)
-                    try:
-                        number = units.counted(measure, value, machine.units.get(measure, ""))
-                    except QuantityError as error:
-                        wrong.append(f"[{section}] bounds: {error}.")
-                    changed["bounds"][measure][i] = number
-    return changed
+
+    def bound(measure: str | None, said: object, place: str, i: int) -> object:
+        if units_of is None or not isinstance(said, str):
+            return 0.0 if units_of is None else said
+        with refused(place):
+            return units.counted(str(measure), said, units_of.get(str(measure), ""))
+
+    def each(read: Any, name: str | None, values: object, place: str) -> object:
+        if not isinstance(values, list):
+            return values
+        found = []
+        for i, said in enumerate(values):
+            try:
+                found.append(read(name, said, place, i))
+            except ValueError as error:
+                wrong.append(str(error))
+                found.append(0.0)
+        return found
+
+    usual = _parameter(data.get("continue"))
+    found = dict(data)
+    for section in ("continue", "sweep", "atlas", "chart"):
+        if isinstance(values := data.get(section), dict):
+            name = _parameter(values) or usual
+            lists = {key: values[key] for key in ("within", "values") if key in values}
+            found[section] = values | {
+                key: each(number, name, said, f"[{section}] {key}") for key, said in lists.items()
+            }
+            if isinstance(bounds := values.get("bounds"), dict):
+                found[section]["bounds"] = {
+                    measure: each(bound, measure, pair, f"[{section}] bounds")
+                    for measure, pair in bounds.items()
+                }
+    return found
 
 
 def number_of(machine: Physical, name: str, value: object, place: str, spread: bool = False) -> object:

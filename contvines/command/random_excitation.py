@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from ..continuation.settings import Settings
 from ..shared.numbers import figures
-from ..text_table import Table, titled
 from .frame import present
-from .measured import Scales, Series, written
+from .measured import Rows, Scales, Series, Told, written
 from .options import JsonOption, PlotOption, SizeOption, argument, option
 from .study_data import Sort, Study
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 WORDS = {
     "oscillator": "displacement of the oscillator from its base",
@@ -72,51 +65,7 @@ def random(
     present(found, json_, plot, size)
 
 
-@dataclass
-class Found:
-    """A random response in the study's units.
-
-    Attributes
-    ----------
-    title : str
-    rows : list of (name, value, standard error, unit, words)
-    series : list of (name, unit, float array)
-        Frequencies, and the spectral densities of the responses.
-    """
-
-    title: str
-    rows: list[tuple[str, float, float, str, str]]
-    series: Series
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return values and standard errors by name, and their units, ready for JSON."""
-        return {
-            **{name: {"value": value, "error": error} for name, value, error, _, _ in self.rows},
-            "units": {name: unit for name, _, _, unit, _ in self.rows if unit},
-        }
-
-    def __str__(self) -> str:
-        rows = [(name, *_rounded(value, error), unit, words) for name, value, error, unit, words in self.rows]
-        return titled(self.title, Table(("figure", "value", "+-", "unit", "what it is"), rows))
-
-    def plot(self, figsize: tuple[float, float] | None = None) -> Figure:
-        """Plot the spectral densities over the frequency."""
-        from ..plots.measured import plot_densities
-
-        (_, hertz, frequencies), *densities = self.series
-        shown = {name: (values, unit) for name, unit, values in densities}
-        return plot_densities(frequencies, hertz, shown, figsize=figsize)
-
-
-def _rounded(value: float, error: float) -> tuple[str, str]:
-    """Format a number to the second digit of its error, and the error."""
-    if not (error > 0.0 and math.isfinite(error)) or error < Settings.located * abs(value):
-        return figures(value), "" if math.isnan(error) else "0"
-    digits = max(2, min(6, math.ceil(math.log10(max(abs(value), error) / error)) + 2))
-    return f"{value:.{digits}g}", f"{error:.2g}"
-
-
-def _computed(study: Study, seed: int | None) -> Found:
+def _computed(study: Study, seed: int | None) -> Told:
     from orbits.design.random_excitation import Density, random_base, random_page
 
     said = study.random
@@ -155,7 +104,8 @@ def _computed(study: Study, seed: int | None) -> Found:
         """Return the factor from a dimensionless response to the study's unit, and the unit's name."""
         return (1.0, shown.get(name, "")) if page else (scales.factor("length"), scales.unit("length"))
 
-    rows = []
+    rows: Rows = []
+    errors: dict[str, float] = {}
     for name, (value, error) in response.numbers.items():
         sort, _, what = name.partition("_")
         if name in OWN:
@@ -164,11 +114,12 @@ def _computed(study: Study, seed: int | None) -> Found:
         else:
             factor, unit = length(what)
             words = f"{KINDS[sort]} of {what}" if page else f"{KINDS[sort]}: {WORDS[what]}"
-        rows.append((name, factor * value, factor * error, unit, words))
+        rows.append((name, factor * value, unit, words))
+        errors[name] = factor * error
     series: Series = [("frequency", "Hz" if shown else "", response.omega * rate / turn)]
     for name, values in response.densities.items():
         factor, unit = length(name)
         series.append((name, f"{unit}^2/Hz" if unit else "", values * factor**2 * turn / rate))
     seconds = f"{figures(response.duration / rate)} {'s' if shown else 'units of time'}"
     title = f"{study.path.name} under random excitation: {response.records} records of {seconds}"
-    return Found(title, rows, series)
+    return Told(title, rows, series, errors=errors)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .frame import draw, held, interruptible, place_of, say, tell
+from .frame import draw, held, interruptible, journal_of, place_of, refuse_another, say, tell
 from .options import (
     FreshOption,
     JsonOption,
@@ -133,7 +133,6 @@ def surveyed(
         units_of,
         ways_of,
     )
-    from .sweep_rows import journal_of, refuse_another
 
     (plan, model), outcomes, about = plan_and_machine(study), outcomes_of(study), asked_of(study)
     over, within, journal = study.parameter, study.within, journal_of(target)

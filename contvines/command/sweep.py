@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import csv
+import json
 import math
 from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import gettempdir
 from typing import TYPE_CHECKING, Annotated, Any
 
-from ..shared.motions import BAND
+from ..shared import row_journal
+from ..shared.files import digest_of
+from ..shared.motions import BAND, SILENT
 from ..shared.numbers import figures
 from ..text_table import Table, fitted, terminal_width
-from .frame import Interrupted, draw, held, load_file, place_of, say, tell
+from .frame import Interrupted, draw, held, journal_of, load_file, place_of, refuse_another, say, tell
 from .options import (
     FreshOption,
     JsonOption,
@@ -28,7 +34,9 @@ if TYPE_CHECKING:
 
     from ..graph import Graph
     from .study_data import Study
-    from .sweep_rows import Kept
+
+FIRST = ("value", "direction", "attractor", "word", "periods", "impacts")
+LAST = ("modulation", "symmetric", "nodes")
 
 
 def sweep(
@@ -49,11 +57,11 @@ def sweep(
     quiet: QuietOption = False,
 ) -> None:
     """Simulate over the parameter, each value from the last state; an interrupted run goes on."""
-    from .compose import check_shaken
+    from .compose import check_shaken, machine
     from .study import read_study
-    from .sweep_rows import header_of, journal_of, refuse_another, rows_as_json
 
     read = read_study(study)
+    machine(read)
     check_shaken(read)
     target = place_of(output, study, "-sweep.csv")
     graph: Graph | None = None
@@ -78,10 +86,8 @@ def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]
     from orbits.attractors.sweeping import sweep as simulate
 
     from ..long_work import counted
-    from .compose import machine
-    from .sweep_rows import Rows, kept
 
-    model = machine(study)
+    model = study.model
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
     others: dict[str, Any] = {k: v for k, v in study.loose.items() if k != study.parameter}
@@ -150,14 +156,22 @@ def graph_beneath(path: Path, study: Study) -> Graph:
     ValueError
         If it is not; the message names the fields that differ and their values.
     """
+    from ..continuation.settings import Settings
+    from ..shared.numbers import TINY
+
     graph = load_file(path)
     if graph.parameter != study.parameter:
         raise ValueError(f"{path} continues in {graph.parameter}, the study sweeps over {study.parameter}.")
-    theirs, ours = _graph_machine(graph), _study_machine(study)
+    over, model, theirs = study.parameter, study.model, _machine_of(graph)
+    vector = model.vector_at(over, study.parameters[over], study.loose)
+    ours = {"name": model.name, **model.named(vector)}
+    close = {"rel_tol": Settings.rounding, "abs_tol": TINY}
     differing = [
-        f"{name} = {_shown(theirs[name])} there and {_shown(own)} in the study"
+        f"{name} = {there!r} there and {own!r} in the study"
         for name, own in ours.items()
-        if name != study.parameter and name in theirs and not _same(theirs[name], own)
+        if name != over
+        and (there := theirs.get(name, own)) != own
+        and (isinstance(own, str) or not math.isclose(own, there, **close))
     ]
     if differing:
         raise ValueError(
@@ -167,7 +181,7 @@ def graph_beneath(path: Path, study: Study) -> Graph:
     return graph
 
 
-def _graph_machine(graph: Graph) -> dict[str, Any]:
+def _machine_of(graph: Graph) -> dict[str, Any]:
     """Return name and parameters of a graph's machine; the parameters of the excitation come from its branches."""
     from orbits.flows import machine_of
     from orbits.machines.names import NAMES
@@ -180,29 +194,6 @@ def _graph_machine(graph: Graph) -> dict[str, Any]:
     if params is None:
         return known
     return {"name": known["name"], **dict(zip(machine_of(known).parameter_names, params))}
-
-
-def _study_machine(study: Study) -> dict[str, Any]:
-    from .study_data import Sort
-
-    model = study.model
-    if study.sort is Sort.PHYSICAL:
-        return {"name": study.name, **model.named(model.vector())}
-    vector = model.vector({**study.loose, study.parameter: study.parameters[study.parameter]})
-    return {"name": model.name, **model.named(vector)}
-
-
-def _same(a: float | str, b: float | str) -> bool:
-    from ..continuation.settings import Settings
-    from ..shared.numbers import TINY
-
-    if isinstance(a, str) or isinstance(b, str):
-        return a == b
-    return math.isclose(a, b, rel_tol=Settings.rounding, abs_tol=TINY)
-
-
-def _shown(value: object) -> str:
-    return repr(value) if isinstance(value, str) else f"{value:.15g}"
 
 
 def picture(
@@ -254,10 +245,9 @@ def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:
 
 
 def _drawn_impact(row: Kept, lines: list[tuple[Any, Any, Any]]) -> int | None:
-    """Return the index of the impact of a motion that corresponds to the first impact of its branch's word, whose B the branch's line shows.
+    """Return the index of the impact of a motion whose B the line of its branch shows; None if no branch has its word.
 
-    If a rotation or the mirror image of the word equals the word, several impacts are possible, also as the mirror image of an
-    asymmetric orbit lies on the same branch; the impact nearest to the line is taken. None if no branch has the word.
+    The motion, a rotation of its word or its mirror image lies on the branch: the line's impact is the one nearest to the line.
     """
     import numpy as np
 
@@ -269,22 +259,149 @@ def _drawn_impact(row: Kept, lines: list[tuple[Any, Any, Any]]) -> int | None:
             own = Word.parse(row.word, word.frictionless)
         except WordError:
             continue
-        if len(own.events) != len(word.events):
-            continue
-        inside = np.flatnonzero((values[:-1] - row.value) * (values[1:] - row.value) <= 0.0)
-        if not len(inside):
-            continue
-        width = values[inside + 1] - values[inside]
-        share = np.divide(
-            row.value - values[inside], width, out=np.zeros_like(width), where=np.abs(width) > 0.0
-        )
-        there = heights[inside] + share * (heights[inside + 1] - heights[inside])
-        lead = next(i for i, letter in enumerate(word.events) if letter in "LR")
-        places = [i for i, letter in enumerate(own.events) if letter in "LR"]
-        for shift in range(len(own.events)):
-            turned = own.rotate(shift)
-            if word in (turned, turned.mirror()):
-                place = places.index((shift + lead) % len(own.events))
-                if place < len(row.dots):
-                    candidates.append((float(np.abs(there - row.dots[place]).min()), place))
+        if own.canonical() == word.canonical():
+            i = np.flatnonzero((values[:-1] - row.value) * (values[1:] - row.value) <= 0.0)
+            width = values[i + 1] - values[i]
+            share = (row.value - values[i]) / np.where(width == 0.0, 1.0, width)
+            for there in heights[i] + share * (heights[i + 1] - heights[i]):
+                candidates += [(abs(there - dot), place) for place, dot in enumerate(row.dots)]
     return min(candidates)[1] if candidates else None
+
+
+# ---------------------------------------------------------------------- rows
+@dataclass(frozen=True)
+class Kept:
+    """A row of a sweep: one value of the parameter and the motion there.
+
+    Attributes
+    ----------
+    cells : list of str
+        The row of the CSV file.
+    attractor : str
+        Kind of the motion; `sliding` is distinguished from `periodic`.
+    recurrent : bool
+        Whether the motion recurs.
+    modulation : str
+        Its modulation; see `contvines.shared.motions`.
+    band : list of float
+        Lowest, mean and highest of the largest response per forcing period; empty without modulation.
+    dots : list of float
+        Numbers that a picture shows: the largest |q1|, or B at every impact (beginning with the first one of the word, if there is a word).
+    state : list of float
+        The final state, from which the next value continues.
+    """
+
+    cells: list[str]
+    attractor: str
+    recurrent: bool
+    dots: list[float]
+    state: list[float]
+    modulation: str = ""
+    band: list[float] = field(default_factory=list)
+
+    @property
+    def value(self) -> float:
+        return float(self.cells[0])
+
+    @property
+    def word(self) -> str:
+        return self.cells[3]
+
+    @property
+    def periods(self) -> int:
+        return int(self.cells[4])
+
+
+def kept(row: SweepRow, direction: str, names: list[str]) -> Kept:
+    """Convert a row of `orbits.attractors.sweep`; `names` are the measures in the order of the CSV's columns."""
+    found, guess = row.detail, row.detail.guess
+    kind = "periodic" if row.attractor == "sliding" else row.attractor
+    cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
+    for name in names:
+        x = float(row.measures[name])
+        cells.append(repr(x) if math.isfinite(x) or name not in (*BAND, SILENT) else "")
+    nodes = "" if guess is None else json.dumps([[float(x) for x in node] for node in guess])
+    cells += [row.modulation, str(int(found.symmetric)) if found.recurrent else "", nodes]
+    band = [float(row.measures[name]) for name in BAND] if row.modulation else []
+    return Kept(
+        cells, row.attractor, found.recurrent, row.dots, [float(x) for x in found.state], row.modulation, band
+    )
+
+
+def rows_as_json(rows: list[Kept], study: Study) -> dict[str, Any]:
+    """Return the content of the CSV ready for JSON, at full precision, and the share of the values with modulated motions, by kind."""
+    names = measured_names(study)
+    kinds = dict.fromkeys(row.modulation for row in rows if row.modulation)
+    return {
+        "parameter": study.parameter,
+        "modulated": {kind: sum(row.modulation == kind for row in rows) / len(rows) for kind in kinds},
+        "rows": [dict(zip((*FIRST, *names, *LAST), map(_read, row.cells))) for row in rows],
+    }
+
+
+def measured_names(study: Study) -> list[str]:
+    """Return the names of the measures in the rows, in the order of the CSV's columns."""
+    from orbits.attractors.attractor import measure_names
+
+    return [name for name in measure_names(study.model) if name not in FIRST]
+
+
+def _read(cell: str) -> object:
+    """Convert a cell of the CSV to a JSON value."""
+    try:
+        return json.loads(cell)
+    except ValueError:
+        return cell or None
+
+
+class Rows(row_journal.Rows[Kept]):
+    """The rows of a sweep on disk, each written at once.
+
+    The CSV file is for the user. The journal beside it (`FILE.csv.unfinished`) has the states, too; it is deleted when the sweep is finished.
+    """
+
+    def __init__(self, target: Path, study: Study, down: bool) -> None:
+        self.target, self.names = target, measured_names(study)
+        from ..graph.table import with_unit
+
+        units = study.model.units
+        units = {"value": units.get(study.parameter), **units}
+        self.heads = [with_unit(name, units.get(name)) for name in (*FIRST, *self.names, *LAST)]
+        self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
+        if not target.exists():
+            journal_of(target).unlink(missing_ok=True)
+        super().__init__(journal_of(target) if self.lasting else None, header_of(study, down), Kept)
+
+    def __enter__(self) -> Rows:
+        try:
+            super().__enter__()
+            self.table = self.target.open("w", newline="", encoding="utf-8")
+        except OSError as error:
+            super().__exit__()
+            raise ValueError(
+                f"{self.target}: cannot be written there ({error.strerror}); "
+                f"choose another place with -o, for example -o {Path(gettempdir()) / self.target.name}."
+            ) from None
+        self._write(self.heads, *(row.cells for row in self.found))
+        return self
+
+    def keep(self, row: Kept) -> None:
+        """Add a row and write it to both files."""
+        self._write(row.cells)
+        super().keep(row)
+
+    def _write(self, *lines: list[str]) -> None:
+        csv.writer(self.table).writerows(lines)
+        self.table.flush()
+
+    def __exit__(self, kind: object = None, *_: object) -> None:
+        self.table.close()
+        super().__exit__()
+        if kind is None and self.path is not None:
+            self.path.unlink(missing_ok=True)
+
+
+def header_of(study: Study, down: bool) -> dict[str, str]:
+    """Return the first line of a sweep's journal, with a digest of everything that determines its rows; equal for runs with equal results."""
+    decides = {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}
+    return {"contvines": "unfinished sweep", "of": digest_of(decides)}

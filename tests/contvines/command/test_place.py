@@ -3,7 +3,6 @@
 import selectors
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -34,7 +33,7 @@ def study(tmp_path):
     return write
 
 
-def names(path: Path) -> list[str]:
+def names(path):
     return sorted(p.name for p in path.iterdir())
 
 

@@ -21,8 +21,7 @@ def test_a_study_is_read():
     assert read.parameters["half_width"] == 15.0 and read.parameters["frequency"] == 7.9
     model = machine(read)
     assert model.column(model.vector(), "frequency") == pytest.approx(7.9 / 8.0, rel=1e-14)
-    moved = study('no units\nmodel.units = "si"')
-    assert moved.describe() == read.describe() and moved.fingerprint() == read.fingerprint()
+    assert study('no units\nmodel.units = "si"').fingerprint() == read.fingerprint()
     other = study('start.force_amplitude = "3 N"').parameters  # another word for what shakes
     assert "base_amplitude" not in other and other["force_amplitude"] == 3.0
 
@@ -47,23 +46,24 @@ def test_a_word_that_is_not_there_names_the_line_to_delete():
 def test_quantities_of_a_declared_machine_are_numbers_in_its_units():
     read = study(
         'model = { clearance_1 = "1.5 cm", oscillator_mass = "3800 g", friction_1 = 0.2 }\n'
-        'continue.within = ["7 Hz", "0.009 kHz"]\n'
+        'continue.within = ["7 Hz", "0.009 kHz"]\ncontinue.bounds.max_q = ["0 mm", "3 cm"]\nsweep.within = ["8 Hz", "540 rpm"]\n'
         'survey.vary = { clearance_1.within = ["6 mm", "0.03 m"], base_amplitude.uniform = ["0.3 mm", "400 um"] }\n'
         'survey.outcomes = ["largest:peak_force", "largest:max_q"]',
         TWO,
     )
     loose = {name: read.loose[name] for name in ("clearance_1", "oscillator_mass", "friction_1")}
     assert loose == pytest.approx({"clearance_1": 15.0, "oscillator_mass": 3.8, "friction_1": 0.2})
-    assert read.within == pytest.approx((7.0, 9.0))
-    vary = read.survey.vary
-    assert vary["clearance_1"] == {"within": pytest.approx([6.0, 30.0])}
-    assert vary["base_amplitude"] == {"uniform": pytest.approx([0.3, 0.4])}
+    assert (read.within, read.sweep.within) == (pytest.approx((7.0, 9.0)), pytest.approx([8.0, 9.0]))
+    assert read.bounds["max_q"] == pytest.approx((0.0, 30.0))
+    assert read.survey.vary == {
+        "clearance_1": {"within": pytest.approx([6.0, 30.0])},
+        "base_amplitude": {"uniform": pytest.approx([0.3, 0.4])},
+    }
     with pytest.raises(ValueError, match="--target 3 kg: .*max_abs_q is shown in mm"):
         _target("3 kg", read)
     assert _target("3 cm", read) == pytest.approx(30.0)
-    units = units_of(read, read.model)
     wanted = {"largest_peak_force": "N", "largest_max_q": "mm", "largest_max_q_at": "Hz"}
-    assert {name: units[name] for name in wanted} == wanted
+    assert wanted.items() <= units_of(read, read.model).items()
     about = read.describe()["model"]
     assert about["name"] == "coupled_two" and not {"page", "source", "digest"} & set(about)
 
@@ -124,8 +124,6 @@ def test_branches_end_where_a_measure_leaves_its_interval(run, tmp_path):
 
 def test_bounds_are_read_in_their_units():
     """Measures are shown in millimetres, millimetres per second and so on; bounds may be text with any unit of that kind."""
-    plain = study("continue.bounds.B = [-inf, 150.0]")
-    assert plain.bounds == {"B": (-np.inf, 150.0)}
-    size = {"m/s": 1.0, "mm/s": 1e3, "cm/s": 1e2}[machine(plain).units["B"]]
-    told = study('continue.bounds.B = ["2 cm/s", "150 mm/s"]')
-    assert told.bounds["B"] == pytest.approx((0.02 * size, 0.15 * size), rel=1e-14)
+    assert study("continue.bounds.B = [-inf, 150.0]").bounds == {"B": (-np.inf, 150.0)}
+    told = study('continue.bounds.B = ["2 cm/s", "0.15 m/s"]')
+    assert told.bounds["B"] == pytest.approx((20.0, 150.0), rel=1e-14)  # mm/s
