@@ -215,19 +215,19 @@ def carried(result: Resumable) -> dict[str, Any]:
         ``made``: the provenance stored in the result's file, otherwise that of this process; ``settings``; and ``study`` if the
         result's file contains one.
     """
-    about = {"made": result.origin.get("made") or provenance(), "settings": getattr(result, "settings", {})}
+    data = {"made": result.origin.get("made") or provenance(), "settings": getattr(result, "settings", {})}
     study = result.origin.get("study")
-    return {**about, "study": study} if study else about
+    return {**data, "study": study} if study else data
 
 
 def comments(result: Resumable) -> list[str]:
     """Return the metadata of `carried` as readable comment lines: provenance, then the study's text."""
-    about = carried(result)
-    study = about.get("study") or {}
+    data = carried(result)
+    study = data.get("study") or {}
     source = study.get("source") or {}
-    said = source.get("text") or json.dumps(study)
+    text = source.get("text") or json.dumps(study)
     named = f"contvines {source.get('command', '')} {source.get('study', '')}".rstrip()
-    return [as_text(about["made"]), *([f"{named}, the study:", *said.splitlines()] if study else [])]
+    return [as_text(data["made"]), *([f"{named}, the study:", *text.splitlines()] if study else [])]
 
 
 def as_text(made: dict[str, str]) -> str:

@@ -75,8 +75,8 @@ class _Listening(ContextDecorator):
             _plain.signal(signal.SIGINT, signal.default_int_handler)
         finally:
             _state.held, _state.listening = 0, False
-            came, _state.wanted = _state.wanted, False
-        if came:
+            interrupted, _state.wanted = _state.wanted, False
+        if interrupted:
             raise KeyboardInterrupt
 
 
@@ -245,7 +245,7 @@ class _Log:
 
 
 @contextmanager
-def counted(total: int, what: str, asked: Tell | bool | None = None, done: int = 0) -> Iterator[Tell | None]:
+def counted(total: int, noun: str, asked: Tell | bool | None = None, done: int = 0) -> Iterator[Tell | None]:
     """Yield a callable to be called after each piece of work, which displays the count; None for no display.
 
     No display thread is started: a process with threads cannot be forked into worker processes.
@@ -254,7 +254,7 @@ def counted(total: int, what: str, asked: Tell | bool | None = None, done: int =
     ----------
     total : int
         Number of pieces.
-    what : str
+    noun : str
         Name of the pieces, in the plural.
     asked : callable, bool or None
         As for :func:`shown`.
@@ -266,7 +266,7 @@ def counted(total: int, what: str, asked: Tell | bool | None = None, done: int =
         return
 
     def count(_: object) -> str:
-        return f"{done} of {total} {what}"
+        return f"{done} of {total} {noun}"
 
     def telling(tell: Tell) -> Tell:
         def tick(piece: object) -> None:
@@ -284,7 +284,7 @@ def counted(total: int, what: str, asked: Tell | bool | None = None, done: int =
         from rich.progress import Progress
 
         with Progress(console=Console(stderr=True), transient=True, auto_refresh=False) as progress:
-            task = progress.add_task(what, total=total, completed=done)
+            task = progress.add_task(noun, total=total, completed=done)
             yield lambda _: progress.update(task, advance=1, refresh=True)
     else:
         yield telling(_Log(count)) if asked else None
@@ -325,14 +325,14 @@ def carried_out(
         If `interrupt` is neither of the two words, or `journal` lacks a method of a journal.
     """
     check_interrupt(interrupt)
-    kept = MemoryJournal() if journal is None else checked(journal)
+    stored = MemoryJournal() if journal is None else checked(journal)
     with shown(progress) as tell:
-        result, work = begin(kept, tell)
+        result, work = begin(stored, tell)
         try:
             work()
         except KeyboardInterrupt:
             take()
-            unfinished(result, partial(carried_out, begin, kept, progress, interrupt))
+            unfinished(result, partial(carried_out, begin, stored, progress, interrupt))
             if interrupt == "return":
                 return result
             raise Interrupted(result) from None

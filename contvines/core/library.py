@@ -70,19 +70,19 @@ def _load(choice: str) -> ctypes.CDLL:
 def _open(variant: str) -> ctypes.CDLL:
     path = path_of(variant)
     checkout = (SOURCES / "core.cpp").exists()
-    again = "run python -m contvines.core.build" if checkout else "install contvines again"
+    advice = "run python -m contvines.core.build" if checkout else "install contvines again"
     if not path.exists():
-        raise Unusable(f"{path} is missing; {again}")
+        raise Unusable(f"{path} is missing; {advice}")
     if not _whole(path):
-        raise Unusable(f"{path} is cut short; {again}")
+        raise Unusable(f"{path} is cut short; {advice}")
     try:
         found = ctypes.CDLL(str(path))
         assert found.core_digest
     except (OSError, AttributeError) as error:
-        raise Unusable(f"{path} cannot be loaded ({error}); {again}") from error
+        raise Unusable(f"{path} cannot be loaded ({error}); {advice}") from error
     found.core_digest.restype = ctypes.c_char_p
     if checkout and found.core_digest().decode() != digest():
-        raise Unusable(f"{path} is older than its sources; {again}")
+        raise Unusable(f"{path} is older than its sources; {advice}")
     return found
 
 

@@ -41,7 +41,7 @@ class Struct(Protocol):
     def memory(self) -> np.ndarray: ...
 
 
-def memory_of(thing: object) -> int:
+def memory_of(owner: object) -> int:
     """Return the address of the data or the workspace of a compiled problem.
 
     Raises
@@ -50,10 +50,10 @@ def memory_of(thing: object) -> int:
         If it has no memory that native code can read.
     """
     memory = getattr(
-        thing, "memory", None
+        owner, "memory", None
     )  # no isinstance test with a protocol, which is slow: this is called at every point
     if not isinstance(memory, np.ndarray):
-        raise TypeError(f"a {type(thing).__name__} has no memory for the native core")
+        raise TypeError(f"a {type(owner).__name__} has no memory for the native core")
     return address(memory)
 
 
@@ -228,16 +228,16 @@ def pack(*members: float | np.ndarray) -> np.ndarray:
     TypeError
         If an array is not C-contiguous, or its type is neither float64 nor int64.
     """
-    made = np.empty(len(members), np.int64)
-    numbers = made.view(np.float64)
+    struct = np.empty(len(members), np.int64)
+    numbers = struct.view(np.float64)
     for i, member in enumerate(members):
         if isinstance(member, np.ndarray):
-            made[i] = place(member)
+            struct[i] = place(member)
         elif isinstance(member, float):
             numbers[i] = member
         else:
-            made[i] = member
-    return made
+            struct[i] = member
+    return struct
 
 
 def place(array: np.ndarray) -> int:

@@ -88,10 +88,10 @@ def _parameter_places(branch: Branch) -> dict[str, int]:
 
 def _parameters(branch: Branch) -> dict[str, float]:
     """Return the numerical parameters in a branch's description, by name."""
-    told = branch.description.get("p0") or branch.description.get("model") or {}
+    given = branch.description.get("p0") or branch.description.get("model") or {}
     return {
         str(name): float(value)
-        for name, value in told.items()
+        for name, value in given.items()
         if isinstance(value, int | float) and not isinstance(value, bool)
     }
 
@@ -105,8 +105,8 @@ def _diagram(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
         norm = measures.get("norm")
         if norm is None:
             norm = np.linalg.norm(branch.points, axis=1)
-        shown = {branch.parameter: branch.values, "L2-NORM": norm, **measures}
-        shown.pop("norm", None)
+        columns = {branch.parameter: branch.values, "L2-NORM": norm, **measures}
+        columns.pop("norm", None)
         names = {place: name for name, place in _parameter_places(branch).items()}
         yield f"   0 {low:11.4E} {high:11.4E} {0.0:11.4E} {0.0:11.4E}"
         yield f"   0   NDIM={branch.points.shape[1] if not cycles else _dimension(branch):4d} IPS ={2 if cycles else 1:4d}"
@@ -115,7 +115,7 @@ def _diagram(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
         yield f"   0   Active continuation parameter:  {branch.parameter!r}"
         yield "   0"
         yield "   0    PT  TY  LAB " + "".join(
-            f"{name.replace('_', ' ')[: WIDTH - 1]:^{WIDTH}}" for name in shown
+            f"{name.replace('_', ' ')[: WIDTH - 1]:^{WIDTH}}" for name in columns
         )
         marks = {index: label for index, label in branch.marks if label in labels}
         for k in range(len(branch)):
@@ -123,7 +123,7 @@ def _diagram(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
             stable = branch.stable is not None and bool(branch.stable[k])
             label = marks.get(k)
             kind = 0 if label is None else _type(graph.special[label], branch)
-            row = "".join(_number(column[k]) for column in shown.values())
+            row = "".join(_number(column[k]) for column in columns.values())
             yield f"{number:4d}{-place if stable else place:6d}{kind:4d}{labels.get(label or '', 0):5d}{row}"
 
 
@@ -229,6 +229,6 @@ def _ends(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
     state = next((name for name in names if f"min {name}" in measures), None)
     if state is not None:
         return measures[f"max {state}"], measures[f"min {state}"]
-    shown = next((name for name in measures if name not in ("norm", "period")), None)
-    values = measures[shown] if shown else np.linalg.norm(branch.points, axis=1)
+    chosen = next((name for name in measures if name not in ("norm", "period")), None)
+    values = measures[chosen] if chosen else np.linalg.norm(branch.points, axis=1)
     return values, values

@@ -143,11 +143,11 @@ def _graphml(graph: Graph, path: Path) -> None:
     """Write GraphML (graphml.graphdrawing.org): a `key` element for each attribute of nodes and edges, then the graph with its data."""
     keys: dict[tuple[str, str, str], ElementTree.Element] = {}
 
-    def describe(element: ElementTree.Element, of: str, data: dict[str, Any]) -> None:
+    def describe(element: ElementTree.Element, element_kind: str, data: dict[str, Any]) -> None:
         for name, value in _flat(data).items():
             kind = next(kind for sort, kind in _GRAPHML_TYPES if isinstance(value, sort))
-            about = {"id": f"d{len(keys)}", "for": of, "attr.name": name, "attr.type": kind}
-            key = keys.setdefault((of, name, kind), ElementTree.Element("key", about))
+            attributes = {"id": f"d{len(keys)}", "for": element_kind, "attr.name": name, "attr.type": kind}
+            key = keys.setdefault((element_kind, name, kind), ElementTree.Element("key", attributes))
             text = str(value).lower() if kind == "boolean" else str(value)
             ElementTree.SubElement(element, "data", key=key.attrib["id"]).text = text
 

@@ -131,7 +131,7 @@ def branch_dataset(branch: Branch) -> Dataset:
     for name, values in measures_of(branch).items():
         if name not in variables and name != branch.parameter:
             variables[name] = ("point", values, {"units": units[name]} if name in units else {})
-    about = {"label": branch.label, "word": str(branch.description.get("word", "")), "real": int(branch.real)}
+    attrs = {"label": branch.label, "word": str(branch.description.get("word", "")), "real": int(branch.real)}
     special = np.full(len(branch), "", dtype="U16")
     for i, label in branch.marks:
         special[i] = label
@@ -141,7 +141,7 @@ def branch_dataset(branch: Branch) -> Dataset:
         branch.parameter: ("point", branch.values, attributes),
         "special": ("point", special),
     }
-    return xarray.Dataset(variables, coordinates, about)
+    return xarray.Dataset(variables, coordinates, attrs)
 
 
 def _dataset(frame: DataFrame, units: Mapping[str, str]) -> Dataset:

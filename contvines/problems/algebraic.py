@@ -340,22 +340,22 @@ class AlgebraicProblem(CallableProblem):
             span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
             tolerances: dict[str, Any] = {"rtol": SIMULATION.relative, "atol": SIMULATION.absolute * size}
             solver = LSODA(rate, 0.0, u, np.inf, **tolerances)
-            rest, since = u, 0.0  # last state that was left by more than `still`, and its time
+            rest, rest_time = u, 0.0  # last state that was left by more than `still`, and its time
             for _ in range(PATIENCE):
                 solver.step()
                 x = solver.y
                 if solver.status == "failed" or not float((np.abs(x) / size).max()) < SIMULATION.far:
                     return "escapes", u
                 if float((np.abs(x - rest) / size).max()) > SIMULATION.still:
-                    rest, since = x.copy(), solver.t
-                elif solver.t - since > span:
+                    rest, rest_time = x.copy(), solver.t
+                elif solver.t - rest_time > span:
                     return "equilibrium", x.copy()
         return "oscillation", u
 
     # ------------------------------------------------------------------ files
     def describe(self) -> dict[str, Any]:
         """Return name, start, and the data from which `from_description` rebuilds the problem if F can be imported."""
-        where, importable = addresses(self.given)
+        address, importable = addresses(self.given)
         special = (
             self.symmetric,
             self.conditions,
@@ -373,7 +373,7 @@ class AlgebraicProblem(CallableProblem):
             "scale": None if self.given_scale is None else self.given_scale[: self.node].tolist(),
             "leading": self.leading,
             "shift": self.shift,
-            "callables": where,
+            "callables": address,
             "factory": "contvines.problems.algebraic:from_description" if importable and plain else None,
         } | ({"word": self.pieces.word} if self.pieces.count else {})
 

@@ -333,10 +333,10 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
                 found = find_break(line, reach, rows, noise)
             if found is not None:
                 value = p + found.at * float(tangent[-1])
-                where = f"near {self.parameter} = {value:.6g} (row {found.row})"
+                place = f"near {self.parameter} = {value:.6g} (row {found.row})"
                 if found.kind == "jump":
-                    return f"the equations jump {where}"
-                return f"the equations have a kink {where}; switches= would select their pieces"
+                    return f"the equations jump {place}"
+                return f"the equations have a kink {place}; switches= would select their pieces"
         if self.noise > DERIVATIVES.felt:
             j = int(np.argmax(self.functions.noise))
             return (

@@ -116,12 +116,12 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
     if np.isfinite(product).all() and not (gap > DERIVATIVES.faint * rows.max()).any():
         return None
     i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))
-    where = f"at {functions.parameters.varying} = {p:.10g}"
+    place = f"at {functions.parameters.varying} = {p:.10g}"
     if functions.given_matrix is None:
-        return f"sparsity lacks an entry of {functions.name} in row {i}, {where}"
+        return f"sparsity lacks an entry of {functions.name} in row {i}, {place}"
     entry = _wrong_entry(functions, matrix, u, p, i)
     if entry is None:
-        return f"jacobian disagrees with differences of {functions.name} in row {i}, {where}"
+        return f"jacobian disagrees with differences of {functions.name} in row {i}, {place}"
     j, given, found = entry
     turned = ""
     if (
@@ -131,7 +131,7 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
         turned = "; it seems to be transposed"
     return (
         f"jacobian disagrees with {functions.name} in row {i}, column {j}: it returns {given:.10g}, "
-        f"differences of {functions.name} give {found:.10g}, {where}{turned}"
+        f"differences of {functions.name} give {found:.10g}, {place}{turned}"
     )
 
 

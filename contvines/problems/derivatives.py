@@ -175,13 +175,13 @@ class Differentiated:
         ValueError
             If f fails, or its result has a wrong shape or is not finite.
         """
-        where = f"at the start {self._where(u, p)}"
+        place = f"at the start {self._where(u, p)}"
         try:
             with np.errstate(all="ignore"):
                 given = self._value.raw(u, p)
                 value = self._value.flat(given, u, p)
         except NotEvaluable as error:
-            raise ValueError(f"{error}, {where}") from error
+            raise ValueError(f"{error}, {place}") from error
         shape = given.shape if isinstance(given, Sparse | Operator) else np.shape(given)
         if shape is not None and len(shape) > 1:
             raise ValueError(f"{self.name} returns an array of shape {shape}; shape ({len(u)},) is needed")
@@ -190,7 +190,7 @@ class Differentiated:
                 f"{self.name} returns {len(value)} numbers for {len(u)} unknowns; as many are needed"
             )
         if not np.all(np.isfinite(value)):
-            raise ValueError(f"{self.name} is not finite {where}")
+            raise ValueError(f"{self.name} is not finite {place}")
         return value
 
     def _where(self, u: np.ndarray, p: float) -> str:
@@ -325,8 +325,8 @@ class Differentiated:
             floor = DERIVATIVES.rounded * np.maximum(change, 0.001 * change.max(initial=0.0))
             # if only this point has it, it is a singularity, such as that of |u| at 0
             if (noise > floor).any():
-                beside = [noise_of(lambda t, s=s: line(s + t), DERIVATIVES.spacing) for s in BESIDE]
-                noise = np.where((noise > floor) & (np.max(beside, axis=0) <= floor), 0.0, noise)
+                nearby = [noise_of(lambda t, s=s: line(s + t), DERIVATIVES.spacing) for s in BESIDE]
+                noise = np.where((noise > floor) & (np.max(nearby, axis=0) <= floor), 0.0, noise)
             # a staircase: close samples lie on the same stair, so that only wide ones show the steps
             steps = roughness(line)
             noise = np.where(

@@ -131,28 +131,28 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         Standard deviation of f beyond roundoff.
     """
     with np.errstate(all="ignore"):
-        here = f(0.0)
-        noticeable = 30.0 * np.broadcast_to(noise, here.shape)
-        floor = DERIVATIVES.cancelled * EPSILON * np.abs(here) + noticeable
+        centre = f(0.0)
+        noticeable = 30.0 * np.broadcast_to(noise, centre.shape)
+        floor = DERIVATIVES.cancelled * EPSILON * np.abs(centre) + noticeable
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
-        beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
+        nearby = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
             ASIDE * lengths[:, None]
         )
-        even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
+        even = np.array([0.5 * (f(t) + f(-t)) - centre for t in lengths])
         reliable = np.abs(odd) > floor + DERIVATIVES.cancelled * EPSILON * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
         # slopes at t and at ASIDE t differ where f is a staircase of rounding, or another power of t
-        reliable &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
+        reliable &= np.abs(slope - nearby) <= 0.05 * np.abs(slope)
         found, many = np.inf, odd.shape[1] > MANY
         for r in range(odd.shape[1]):
             # of many rows, one within the same factor of the best is not examined: each costs evaluations of all rows
             least = found / FACTOR if many else found
-            there = float(here[r])
+            value = float(centre[r])
             found = min(
                 found,
                 _bend_of_row(
-                    f, r, there, lengths, slope[:, r], even[:, r], reliable[:, r], least, float(noticeable[r])
+                    f, r, value, lengths, slope[:, r], even[:, r], reliable[:, r], least, float(noticeable[r])
                 ),
             )
         if not np.isfinite(found) and not reliable.any():
@@ -163,9 +163,9 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
 def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.ndarray) -> float:
     """Length up to which an even function grows like t^2; infinity if it does so at all lengths."""
     curvature = even / lengths[:, None] ** 2
-    beside = np.array([0.5 * (f(ASIDE * t) + f(-ASIDE * t)) for t in lengths]) - f(0.0)
-    beside /= (ASIDE * lengths[:, None]) ** 2
-    reliable = (np.abs(even) > floor) & (np.abs(curvature - beside) <= 0.05 * np.abs(curvature))
+    nearby = np.array([0.5 * (f(ASIDE * t) + f(-ASIDE * t)) for t in lengths]) - f(0.0)
+    nearby /= (ASIDE * lengths[:, None]) ** 2
+    reliable = (np.abs(even) > floor) & (np.abs(curvature - nearby) <= 0.05 * np.abs(curvature))
     found = np.inf
     for r in range(even.shape[1]):
         k = int(np.argmax(reliable[:, r]))
@@ -180,7 +180,7 @@ def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.nda
 def _bend_of_row(
     f: Line,
     r: int,
-    here: float,
+    centre: float,
     lengths: np.ndarray,
     slope: np.ndarray,
     even: np.ndarray,
@@ -207,7 +207,7 @@ def _bend_of_row(
             middle = np.sqrt(low * high)
             ahead, back = float(f(middle)[r]), float(f(-middle)[r])
             change = (
-                abs(0.5 * (ahead - back) / middle - reference) + abs(0.5 * (ahead + back) - here) / middle
+                abs(0.5 * (ahead - back) / middle - reference) + abs(0.5 * (ahead + back) - centre) / middle
             )
             low, high = (middle, high) if change <= 0.5 * abs(reference) else (low, middle)
         if _continuous(f, high, r, noticeable):

@@ -143,10 +143,10 @@ class UserFunction:
 def difference_text(one: np.ndarray, other: np.ndarray) -> str:
     """Return a message if two evaluations at the same arguments differ by more than small noise; else an empty string."""
     one, other = one.reshape(-1), other.reshape(-1)
-    apart = np.abs(one - other)
-    if not (apart > DERIVATIVES.felt * np.abs(one)).any():
+    differences = np.abs(one - other)
+    if not (differences > DERIVATIVES.felt * np.abs(one)).any():
         return ""
-    i = int(np.nanargmax(apart))
+    i = int(np.nanargmax(differences))
     return (
         f"two evaluations of the equations at the same arguments differ ({one[i]:.6g} and {other[i]:.6g} in row {i}); "
         "equations that are random, or depend on earlier calls, have no branches"

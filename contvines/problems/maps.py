@@ -328,7 +328,7 @@ class MapProblem(CallableProblem):
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Names: the user's outputs, "norm", coordinates of the first point, and mean, smallest and largest coordinates over the cycle."""
-        names = [f"{what}{j}" for what in ("x", "mean", "min", "max") for j in range(self.node)]
+        names = [f"{kind}{j}" for kind in ("x", "mean", "min", "max") for j in range(self.node)]
         return (*self.outputs.names, "norm", *names)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
@@ -341,14 +341,14 @@ class MapProblem(CallableProblem):
                 raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
             if name in own:
                 continue
-            what = name.rstrip("0123456789")
-            j = int(name[len(what) :] or 0)
-            if what == "norm":
+            kind = name.rstrip("0123456789")
+            j = int(name[len(kind) :] or 0)
+            if kind == "norm":
                 result[name] = np.sqrt((nodes**2).sum(axis=(1, 2)) / self.cycle)
-            elif what == "x":
+            elif kind == "x":
                 result[name] = nodes[:, 0, j]
             else:
-                result[name] = getattr(nodes[:, :, j], what)(axis=1)
+                result[name] = getattr(nodes[:, :, j], kind)(axis=1)
         return result
 
     def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
@@ -421,7 +421,7 @@ class MapProblem(CallableProblem):
 
     def describe(self) -> dict[str, Any]:
         """Return name, cycle, start, and the data from which `from_description` rebuilds the problem if f can be imported."""
-        where, importable = addresses(self.given)
+        address, importable = addresses(self.given)
         plain = not (self.pieces.count or self.outputs.names)
         return {
             "name": self.name,
@@ -433,7 +433,7 @@ class MapProblem(CallableProblem):
             "u0": self.u0.tolist(),
             "p0": self.values.given(),
             "scale": None if self.node_scale is None else self.node_scale.tolist(),
-            "callables": where,
+            "callables": address,
             "factory": "contvines.problems.maps:from_description" if importable and plain else None,
         }
 

@@ -164,10 +164,10 @@ class Pieces:
         other.switches = [UserFunction(s.f, s.name, parameters) for s in self.switches]
         return other
 
-    def repeated(self, times: int, of: int | None = None) -> Pieces:
-        """Return the signs repeated for several cycles in a row; ``of``: only those of the first nodes."""
+    def repeated(self, times: int, count: int | None = None) -> Pieces:
+        """Return the signs repeated for several cycles in a row; ``count``: only those of the first nodes."""
         other = copy(self)
-        other.signs = np.tile(self.signs[:of], (times, 1))
+        other.signs = np.tile(self.signs[:count], (times, 1))
         return other
 
     def beyond(self, problem: Pieced, point: BorderPoint) -> list[Seed]:

@@ -65,9 +65,9 @@ def factory(name: object) -> Callable[..., Any]:
         if name in listed:
             module, _, function = listed[name].partition(":")
             return getattr(import_module(module), function)
-    shown = repr(name) if len(repr(name)) <= 80 else repr(name)[:77] + "..."
+    quoted = repr(name) if len(repr(name)) <= 80 else repr(name)[:77] + "..."
     raise UnknownFactory(
-        f"the file names the factory {shown}, which is not on the list of factories; it was not called "
+        f"the file names the factory {quoted}, which is not on the list of factories; it was not called "
         "(contvines.register(name, function) adds one of your own)"
     )
 
@@ -115,9 +115,9 @@ def address(f: Callable) -> str | None:
     module, name = getattr(f, "__module__", None), getattr(f, "__qualname__", "")
     if not module or module == "__main__" or "<" in name or not name:
         return None
-    where = f"{module}:{name}"
-    _callables[where] = f
-    return where
+    path = f"{module}:{name}"
+    _callables[path] = f
+    return path
 
 
 def addresses(given: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
@@ -127,28 +127,28 @@ def addresses(given: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
     ----------
     given : mapping of role to callable, mapping of callables, array (a mirror given as a matrix) or None
     """
-    where: dict[str, Any] = {}
+    found_at: dict[str, Any] = {}
     found: list[str | None] = []
     for role, f in given.items():
         if isinstance(f, Mapping):
-            where[role] = {name: address(part) for name, part in f.items()}
-            found += where[role].values()
+            found_at[role] = {name: address(part) for name, part in f.items()}
+            found += found_at[role].values()
         elif f is not None and not callable(f):
-            where[role] = [list(map(float, row)) if hasattr(row, "__len__") else int(row) for row in f]
+            found_at[role] = [list(map(float, row)) if hasattr(row, "__len__") else int(row) for row in f]
         else:
-            where[role] = None if f is None else address(f)
-            found += [] if f is None else [where[role]]
-    return where, all(place is not None for place in found)
+            found_at[role] = None if f is None else address(f)
+            found += [] if f is None else [found_at[role]]
+    return found_at, all(place is not None for place in found)
 
 
-def find_callables(where: Mapping[str, object] | Sequence[object], trust: bool) -> dict[str, Any] | None:
+def find_callables(paths: Mapping[str, object] | Sequence[object], trust: bool) -> dict[str, Any] | None:
     """Return the callables at the addresses of a description; None if one of them cannot be found.
 
     A callable is found if this program has made a problem from it or, with ``trust``, if it can be imported.
 
     Parameters
     ----------
-    where : mapping of role to an address, to a mapping of addresses, to numbers (a mirror given as a matrix) or None
+    paths : mapping of role to an address, to a mapping of addresses, to numbers (a mirror given as a matrix) or None
         (In version 0.1 a list of addresses for maps.)
     trust : bool
         Import callables that are not registered.
@@ -158,7 +158,7 @@ def find_callables(where: Mapping[str, object] | Sequence[object], trust: bool) 
     ValueError
         If a callable cannot be imported.
     """
-    roles = where if isinstance(where, Mapping) else dict(zip(("F", "jacobian", "derivative"), where))
+    roles = paths if isinstance(paths, Mapping) else dict(zip(("F", "jacobian", "derivative"), paths))
     found: dict[str, Any] = {}
     for role, place in roles.items():
         if isinstance(place, Mapping):
@@ -172,19 +172,19 @@ def find_callables(where: Mapping[str, object] | Sequence[object], trust: bool) 
     return found
 
 
-def _find(where: str, trust: bool) -> Callable | None:
-    registered = _callables.get(where)
+def _find(path: str, trust: bool) -> Callable | None:
+    registered = _callables.get(path)
     if registered is not None or not trust:
         return registered
-    module, _, name = where.partition(":")
+    module, _, name = path.partition(":")
     try:
         found: object = import_module(module)
         for part in name.split("."):
             found = getattr(found, part)
     except (ImportError, AttributeError, ValueError) as error:
-        raise ValueError(f"the function {where!r} that the file names cannot be imported ({error})") from None
+        raise ValueError(f"the function {path!r} that the file names cannot be imported ({error})") from None
     if not callable(found):
-        raise ValueError(f"the function {where!r} that the file names is none")
+        raise ValueError(f"the function {path!r} that the file names is none")
     return found
 
 

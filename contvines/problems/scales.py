@@ -221,12 +221,12 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
     if len(u) > EACH:
         return found
     with np.errstate(all="ignore"):
-        here = f(u)
+        value = f(u)
 
         def change(j: int, factor: float) -> np.ndarray:
             moved = u.copy()
             moved[j] *= factor
-            return np.abs(f(moved) - here)
+            return np.abs(f(moved) - value)
 
         # zero may be another solution, so that f does not change: twice the unknown is tried, too
         changes = np.array([np.maximum(change(j, 0.0), change(j, 2.0)) for j in range(len(u))])
@@ -309,10 +309,10 @@ def _even(f: Values, direction: np.ndarray, rows: np.ndarray) -> float | None:
     """Factor of a direction at which the even part of some row reaches `rows`; None if there is none."""
     direction = direction * np.random.default_rng(5).uniform(0.5, 1.0, len(direction))
     with np.errstate(all="ignore"):
-        here = f(np.zeros(len(direction)))
+        centre = f(np.zeros(len(direction)))
 
         def reached(t: float) -> bool:
-            even = 0.5 * (f(t * direction) + f(-t * direction)) - here
+            even = 0.5 * (f(t * direction) + f(-t * direction)) - centre
             return bool(np.any((np.abs(even) > rows) & (rows > 0.0)))
 
         factors = FACTOR ** np.arange(-REACH, REACH + 1.0)

@@ -111,8 +111,8 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
             F[:] = _value(problem, trial, p)
             simplified = correction()[0] if np.isfinite(F).all() else np.full(n, np.nan)
             if size(simplified) < (1.0 - 0.25 * damping) * length and linearised(trial):
-                ahead, there = correction()
-                if there * sign >= 0.0:
+                ahead, new_sign = correction()
+                if new_sign * sign >= 0.0:
                     break
                 linearised(
                     u
@@ -122,7 +122,7 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
             damping = min(max(shorter, 0.1 * damping), 0.5 * damping)
         gap = size(simplified - ahead) * size(ahead)
         damping = min(1.0, damping * length * size(simplified) / gap) if gap > 0.0 else 1.0
-        u, step, sign = trial, ahead, there
+        u, step, sign = trial, ahead, new_sign
     return None
 
 
@@ -244,8 +244,8 @@ class Scout:
         moving = np.append(known, True) & (rates > 0.0)
         free = ~known & (rates[:-1] > 0.0) & self._confirmed(tangent)[:-1]
         if moving.any() and free.any():
-            way = float((sizes[moving] / rates[moving]).min())
-            self.first = np.where(free, np.maximum(rates[:-1] * way, TINY), self.first)
+            length = float((sizes[moving] / rates[moving]).min())
+            self.first = np.where(free, np.maximum(rates[:-1] * length, TINY), self.first)
         self.first, weighable = self._weighed(z, known | free)
         self.known, self.scale = known | (weighable & ~free), self.first.copy()
 
@@ -254,13 +254,13 @@ class Scout:
         if not isinstance(self.work.jacobian, np.ndarray):
             return self.first, known
 
-        def beside(v: np.ndarray) -> np.ndarray:
+        def near_zero(v: np.ndarray) -> np.ndarray:
             try:
                 return self.problem.residuals(z[:-1] + v, float(z[-1]))
             except NotEvaluable:
                 return np.full(self.n, np.nan)
 
-        return weighed(beside, self.work.jacobian, self.first, known)
+        return weighed(near_zero, self.work.jacobian, self.first, known)
 
     def _row_changes(self, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown changes by its scale or the parameter by `width`, by the last linearisation."""
@@ -273,24 +273,24 @@ class Scout:
         noise = self.problem.functions.noise
         if not noise.any():
             return
-        across = self.weights() * tangent
-        step, again = np.zeros((2, self.n + 1))
+        normal = self.weights() * tangent
+        step, response = np.zeros((2, self.n + 1))
         self.work.residual[:] = np.tile(noise, self.n // len(noise))
-        border = across / np.abs(across).max()
-        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, again)
+        border = normal / np.abs(normal).max()
+        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, response)
         moved = float((np.abs(step[:-1]) / self.scale).max())
         if np.isfinite(moved) and moved > DERIVATIVES.roundoff:
             self.noise = min(moved, DERIVATIVES.believed)
 
     def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
         """Which entries of a tangent are not rounding errors: they do not change if another border is used."""
-        step, again = np.zeros(self.n + 1), np.zeros(self.n + 1)
+        step, other = np.zeros(self.n + 1), np.zeros(self.n + 1)
         border = np.random.default_rng(9).uniform(0.5, 1.0, self.n + 1) / np.append(self.first, self.width)
-        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, again)
+        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, other)
         weighed = self.weights() * tangent
         with np.errstate(all="ignore"):
-            again = again * (float(weighed @ tangent) / float(weighed @ again))
-            return np.abs(again - tangent) <= 0.01 * np.abs(tangent)
+            other = other * (float(weighed @ tangent) / float(weighed @ other))
+            return np.abs(other - tangent) <= 0.01 * np.abs(tangent)
 
     def walk(self, z: np.ndarray, tangent: np.ndarray, steps: int) -> None:
         """Follow the branch for some steps in the direction of the tangent."""
@@ -347,16 +347,16 @@ class Scout:
         lost = self._rounding(size)
         size[list(lost)] = 0.0
         bends, first = self.problem.of_unknowns(self.problem.functions.bends), self.first
-        sure = bends | self.known
+        certain = bends | self.known
         # a zero moved by rounding has no size of its own
         least = np.where(np.asarray(self.problem.u0) == 0.0, SCALES.faint, SCALES.rounding)
-        own = np.where(size > np.where(sure, least * first, 0.0), size, first)
+        own = np.where(size > np.where(certain, least * first, 0.0), size, first)
         moved = extent[:-1] > np.where(
-            bends, SCALES.moves * np.minimum(first, own), SCALES.barely * np.where(sure, first, own)
+            bends, SCALES.moves * np.minimum(first, own), SCALES.barely * np.where(certain, first, own)
         )
-        rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
+        rest = np.where(certain, first, np.where(size > 0.0, size, 1.0))
         for j, reach in lost.items():
-            moved[j], rest[j] = False, first[j] if sure[j] else reach
+            moved[j], rest[j] = False, first[j] if certain[j] else reach
         learned = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, learned, rest), SCALES.barely * size)
         far = (extent[:-1] > SCALES.moves * size) | (np.where(bends, extent[:-1], 0.0) > first)
@@ -368,8 +368,8 @@ class Scout:
         unit = float(unit_learned) if travelled and extent[-1] > 0.0 else self.width
         rows = np.where(self.rows > 0.0, self.rows, 1.0)
         rate = float(np.exp(np.mean(np.log(self.rates)))) if self.rates else 1.0
-        untold = np.flatnonzero(~sure & ~moved & (size == 0.0)) if given is None else ()
-        return Scales(unknowns, unit, rows, rate, self.noise, tuple(int(i) for i in untold))
+        unscaled = np.flatnonzero(~certain & ~moved & (size == 0.0)) if given is None else ()
+        return Scales(unknowns, unit, rows, rate, self.noise, tuple(int(i) for i in unscaled))
 
 
 def learn(problem: Unscaled, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:

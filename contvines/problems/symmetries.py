@@ -84,12 +84,12 @@ def image_map(
 def order_of(image: Image, n: int, most: int) -> int | None:
     """Order of an image: how many times it must be applied to give the identity; None if more than `most` times."""
     probe = _probe(n)
-    here = image(probe)
-    within = IDENTITY.image * max(1.0, float(np.abs(here).max()))
+    state = image(probe)
+    within = IDENTITY.image * max(1.0, float(np.abs(state).max()))
     for times in range(1, most + 1):
-        if np.abs(here - probe).max() <= within:
+        if np.abs(state - probe).max() <= within:
             return times
-        here = image(here)
+        state = image(state)
     return None
 
 
@@ -240,14 +240,14 @@ def refuse_asymmetry(
     found = asymmetry(values, image, (u, p), lengths, functions.noise, mixed)
     if found is None:
         return
-    where = f"at u = {_shown(found.u)}, {varying} = {found.p:.6g}"
+    place = f"at u = {_shown(found.u)}, {varying} = {found.p:.6g}"
     if found.row < 0:
         raise ValueError(
             f"{name} is no symmetry of {functions.name}, which cannot be evaluated at the images of the tested states, "
-            f"for example {where}"
+            f"for example {place}"
         )
     raise ValueError(
-        f"{name} is no symmetry of {functions.name}: {where}, row {found.row} of {functions.name} at the image is "
+        f"{name} is no symmetry of {functions.name}: {place}, row {found.row} of {functions.name} at the image is "
         f"{found.found:.8g}, and {found.wanted:.8g} is the image of {functions.name} there ({found.relative:.1g} of its size); "
         f"leave it out, or give an image that solves the same equations"
     )
@@ -308,10 +308,10 @@ def _tried(
     """F at states and at their images, and the states at which only one of the two can be evaluated."""
     tried, lost = [], []
     for u, p in states:
-        here, there = _finite(values, u, p), _finite(values, image(u), p)
-        if here is not None and there is not None:
-            tried.append(Pair(u, p, here, there))
-        elif here is not None or there is not None:
+        value, image_value = _finite(values, u, p), _finite(values, image(u), p)
+        if value is not None and image_value is not None:
+            tried.append(Pair(u, p, value, image_value))
+        elif value is not None or image_value is not None:
             lost.append((u, p))
     return tried, lost
 
@@ -347,25 +347,25 @@ def _worst(tried: list[Pair], turn: Image, noise: np.ndarray) -> Asymmetry | Non
     ]
     allowed = IDENTITY.cancelled * np.max(sizes, axis=0) + NOISY * (noise + np.abs(turn(noise)))
     worst = None
-    for (u, p, _, there), other, size in zip(tried, expected, sizes, strict=True):
-        gap = np.abs(there - other)
+    for (u, p, _, image_value), other, size in zip(tried, expected, sizes, strict=True):
+        gap = np.abs(image_value - other)
         with np.errstate(all="ignore"):
             relative = np.where(gap > IDENTITY.same * size + allowed, gap / size, 0.0)
         row = int(np.argmax(relative))
         if relative[row] > (0.0 if worst is None else worst.relative):
-            worst = Asymmetry(row, float(there[row]), float(other[row]), float(relative[row]), u, p)
+            worst = Asymmetry(row, float(image_value[row]), float(other[row]), float(relative[row]), u, p)
     return worst
 
 
 def _constant(tried: list[Pair], noise: np.ndarray) -> bool:
     """Whether one constant matrix maps F at all states to F at their images."""
-    here, there = np.array([pair.here for pair in tried]), np.array([pair.there for pair in tried])
-    sizes = np.maximum(np.abs(here).max(axis=0), np.abs(there).max(axis=0))
+    values, image_values = np.array([pair.here for pair in tried]), np.array([pair.there for pair in tried])
+    sizes = np.maximum(np.abs(values).max(axis=0), np.abs(image_values).max(axis=0))
     sizes[sizes == 0.0] = 1.0
-    here, there = here / sizes, there / sizes
-    weights = np.linalg.norm(np.hstack([here, there]), axis=1)
+    values, image_values = values / sizes, image_values / sizes
+    weights = np.linalg.norm(np.hstack([values, image_values]), axis=1)
     weights[weights == 0.0] = 1.0  # F is small at near states, which count as much as the others
-    matrix = np.linalg.lstsq(here / weights[:, None], there / weights[:, None], rcond=None)[0]
+    matrix = np.linalg.lstsq(values / weights[:, None], image_values / weights[:, None], rcond=None)[0]
     mixing = 1.0 + np.abs(matrix).sum(axis=0)
     allowed = IDENTITY.same * mixing * weights[:, None] + NOISY * mixing * float((noise / sizes).max())
-    return bool((np.abs(here @ matrix - there) <= allowed).all())
+    return bool((np.abs(values @ matrix - image_values) <= allowed).all())

@@ -56,29 +56,29 @@ class Answer:
 
     def page(self) -> str:
         """Return the HTML text, with the pictures embedded as SVG."""
-        say = html.escape
+        escaped = html.escape
         parts = [
-            f'<p class="answer">{say(self.headline)}</p>',
-            *(f"<p>{say(text)}</p>" for text in self.sentences),
+            f'<p class="answer">{escaped(self.headline)}</p>',
+            *(f"<p>{escaped(text)}</p>" for text in self.sentences),
         ]
         parts += [
-            f"<figure>{_svg(figure)}<figcaption>{say(text)}</figcaption></figure>"
+            f"<figure>{_svg(figure)}<figcaption>{escaped(text)}</figcaption></figure>"
             for figure, text in self.pictures
         ]
         parts.append('<div class="columns">')
         for title, rows in self.tables:
             body = "".join(
-                "<tr>" + "".join(f"<td>{say(cell)}</td>" for cell in row) + "</tr>" for row in rows
+                "<tr>" + "".join(f"<td>{escaped(cell)}</td>" for cell in row) + "</tr>" for row in rows
             )
-            parts.append(f"<section><h2>{say(title)}</h2><table>{body}</table></section>")
+            parts.append(f"<section><h2>{escaped(title)}</h2><table>{body}</table></section>")
         for title, sentences in self.lists:
-            body = "".join(f"<li>{say(text)}</li>" for text in sentences)
-            parts.append(f"<section><h2>{say(title)}</h2><ul>{body}</ul></section>")
+            body = "".join(f"<li>{escaped(text)}</li>" for text in sentences)
+            parts.append(f"<section><h2>{escaped(title)}</h2><ul>{body}</ul></section>")
         parts.append("</div>")
         text = files("contvines.report").joinpath("answer.html").read_text(encoding="utf-8")
         for name, part in {
-            "TITLE": say(self.title),
-            "FOOTER": say(self.footer),
+            "TITLE": escaped(self.title),
+            "FOOTER": escaped(self.footer),
             "BODY": "\n".join(parts),
         }.items():
             text = text.replace(f"<!--{name}-->", part)

@@ -62,7 +62,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
         "special": [_point(graph, point, proof_mark(graph, point.label)) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],
-        "attractors": [_attractor(about) for about in graph.attractors],
+        "attractors": [_attractor(attractor) for attractor in graph.attractors],
         "orbits": _orbits(graph),
     }
 
@@ -81,9 +81,9 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
             measures[name] = shortened(branch.measure(name))
         except (KeyError, ValueError):
             continue  # a measure that this branch does not have
-    about = branch.to_dict()
-    word = about["word"]
-    return about | {
+    data = branch.to_dict()
+    word = data["word"]
+    return data | {
         "word": None if word is None else str(word),
         "what": "" if word is None else motion_name(branch.description),
         "stable_points": None if branch.stable is None else branch.stable.astype(int).tolist(),
@@ -118,25 +118,25 @@ def _marginal(point: SpecialPoint) -> bool:
     return attracts(moduli, 1.0) is None
 
 
-def _attractor(about: Attractor) -> dict[str, Any]:
-    name = short_word(about.name)
+def _attractor(attractor: Attractor) -> dict[str, Any]:
+    name = short_word(attractor.name)
     return {
-        **{key: getattr(about, key) for key in ("value", "kind", "branch", "share", "starts")},
-        "name": name if about.periods <= 1 else f"{name} k={about.periods}",
+        **{key: getattr(attractor, key) for key in ("value", "kind", "branch", "share", "starts")},
+        "name": name if attractor.periods <= 1 else f"{name} k={attractor.periods}",
     }
 
 
 def _orbits(graph: Graph) -> dict[str, Any]:
     """Return for each branch the scenes of its orbits; points are skipped and samples reduced to stay below `NUMBERS`."""
-    kept = [b for b in graph.branches.values() if b.problem is not None and len(b)]
-    total = sum(len(b) for b in kept)
+    solved = [b for b in graph.branches.values() if b.problem is not None and len(b)]
+    total = sum(len(b) for b in solved)
     if not total:
         return {}
     fewest, most = SAMPLES
     samples = int(np.clip(NUMBERS / (total * 8), fewest, most))
     step = max(1, int(np.ceil(total * samples * 8 / NUMBERS)))
     found = {}
-    for branch in kept:
+    for branch in solved:
         marked = {i for i, _ in branch.marks}
         scenes = _scenes(branch, (i for i in range(len(branch)) if i % step == 0 or i in marked), samples)
         if scenes:
@@ -148,10 +148,10 @@ def _scenes(curve: Branch | Locus, places: Iterable[int], samples: int) -> dict[
     """Return the scenes at some points of a branch or locus, by index; empty if the solutions are not `Animated`."""
     found = {}
     for i in places:
-        shown = scene(curve.orbit(i), samples)
-        if shown is None:
+        drawn = scene(curve.orbit(i), samples)
+        if drawn is None:
             break
-        found[str(i)] = shown
+        found[str(i)] = drawn
     return found
 
 
@@ -213,11 +213,11 @@ def _plane_point(point: PlanePoint) -> dict[str, Any]:
 def _region(region: Region, parameters: tuple[str, str]) -> dict[str, Any]:
     name = ", ".join(region.words) or "nothing was simulated here"
     short = "<br>".join(short_word(word, 16) for word in region.words[:4])
-    told = region.to_dict(parameters)
+    data = region.to_dict(parameters)
     if region.others:
-        apart = dict.fromkeys(", ".join(words) or "nothing" for _, words in region.others)
-        name, short = f"{name}; elsewhere in it {', or '.join(apart)}", f"{short}<br>(in part)"
-    return {"at": told["at"], "share": told["share"], "name": name, "short": short}
+        others = dict.fromkeys(", ".join(words) or "nothing" for _, words in region.others)
+        name, short = f"{name}; elsewhere in it {', or '.join(others)}", f"{short}<br>(in part)"
+    return {"at": data["at"], "share": data["share"], "name": name, "short": short}
 
 
 def _raster(chart: Chart) -> dict[str, Any]:

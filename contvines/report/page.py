@@ -82,17 +82,17 @@ def content_of(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[s
 
 def page(data: dict[str, Any], kind: str = "graph") -> str:
     """Return the HTML text of a page of a kind (a key of `PROGRAMS`) that shows `data`."""
-    here = files("contvines.report")
+    folder = files("contvines.report")
     parts = {
         "TITLE": html.escape(f"{data['source']}: {kind}", quote=False),
-        "STYLE": here.joinpath("page.css").read_text(encoding="utf-8"),
-        "BODY": here.joinpath(f"{kind}.html").read_text(encoding="utf-8"),
-        "MOTION": here.joinpath("motion.html").read_text(encoding="utf-8"),  # a part of some bodies
-        "PROGRAM": "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in PROGRAMS[kind]),
+        "STYLE": folder.joinpath("page.css").read_text(encoding="utf-8"),
+        "BODY": folder.joinpath(f"{kind}.html").read_text(encoding="utf-8"),
+        "MOTION": folder.joinpath("motion.html").read_text(encoding="utf-8"),  # a part of some bodies
+        "PROGRAM": "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in PROGRAMS[kind]),
         "PLOTLY": _packed(_plotly()),
         "DATA": _packed(json_text(data, indent=None)),
     }
-    text = here.joinpath("page.html").read_text(encoding="utf-8")
+    text = folder.joinpath("page.html").read_text(encoding="utf-8")
     for name, part in parts.items():
         text = text.replace(f"<!--{name}-->", part)
     return text

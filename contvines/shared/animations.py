@@ -31,8 +31,8 @@ def check_animation(path: str | Path) -> Path:
             f"{place}: an animation ends in .{', .'.join(ENDINGS)}; use {place.with_suffix('.gif')}."
         )
     if place.is_dir() or not place.parent.is_dir():
-        what = "this is a folder" if place.is_dir() else f"there is no folder {str(place.parent)!r}"
-        raise ValueError(f"{place}: {what}; choose another place.")
+        fault = "this is a folder" if place.is_dir() else f"there is no folder {str(place.parent)!r}"
+        raise ValueError(f"{place}: {fault}; choose another place.")
     if ending == "mp4":
         from matplotlib.animation import FFMpegWriter
 
@@ -70,12 +70,12 @@ def animated(
     # the layout is final: a layout engine would draw every frame twice
     with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
         figure.set_layout_engine(None)
-        made = _animation_class()(
+        animation = _animation_class()(
             figure, draw, frames=pictures(seconds, rate), interval=1000.0 / rate, blit=False
         )
         if path is not None:
-            save_animation(made, path, rate)
-    return made
+            save_animation(animation, path, rate)
+    return animation
 
 
 def _animation_class() -> type[FuncAnimation]:

@@ -105,9 +105,9 @@ def new_figure(figsize: Size = None, **options: Any) -> Figure:
         return sys.modules["matplotlib.pyplot"].figure(figsize=figsize, **options)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    made = _picture_class()(figsize=figsize, **options)
-    FigureCanvasAgg(made)
-    return made
+    figure = _picture_class()(figsize=figsize, **options)
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def root(axes: Axes) -> Figure:
@@ -176,12 +176,14 @@ def panels(
             yield root(given[0]), given
             return
         figure = new_figure(figsize=figsize)
-        across, up = figure.get_size_inches()
-        small = narrow is not None and across < NARROW
+        width, height = figure.get_size_inches()
+        small = narrow is not None and width < NARROW
         chosen: Mapping[str, Any] = (narrow or {}) if small else wide
-        made: dict[Any, Axes] = figure.subplot_mosaic(**({"mosaic": "a"} if small and up < LOW else chosen))
-        _prepare(*made.values())
-        yield figure, [made[name] for name in sorted(made)]
+        drawn: dict[Any, Axes] = figure.subplot_mosaic(
+            **({"mosaic": "a"} if small and height < LOW else chosen)
+        )
+        _prepare(*drawn.values())
+        yield figure, [drawn[name] for name in sorted(drawn)]
         if not is_frozen(figure):
             fit(figure)
 

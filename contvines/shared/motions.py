@@ -123,8 +123,8 @@ def onto_circle(multipliers: np.ndarray, near: float) -> np.ndarray:
     If the nearest one is further from the circle than `near`, none is changed: for example where an event of a virtual orbit grazes.
     """
     sizes = np.abs(multipliers)
-    there = _nearest(sizes - 1.0, near)
-    return np.where(there, multipliers / np.where(there, sizes, 1.0), multipliers)
+    critical = _nearest(sizes - 1.0, near)
+    return np.where(critical, multipliers / np.where(critical, sizes, 1.0), multipliers)
 
 
 def onto_axis(eigenvalues: np.ndarray) -> np.ndarray:
@@ -147,12 +147,12 @@ def marginal_text(multipliers: Iterable[complex], flow: bool = False) -> str:
     values = np.asarray(list(multipliers), dtype=complex)
     critical = values[int(np.argmax(np.real(values) if flow else np.abs(values)))]
     if flow:
-        what = "an eigenvalue is 0" if critical.imag == 0.0 else "a pair of eigenvalues is imaginary"
+        reason = "an eigenvalue is 0" if critical.imag == 0.0 else "a pair of eigenvalues is imaginary"
     elif critical.imag == 0.0:
-        what = f"a multiplier is {'1' if critical.real > 0.0 else '-1'}"
+        reason = f"a multiplier is {'1' if critical.real > 0.0 else '-1'}"
     else:
-        what = "a pair of multipliers is on the unit circle"
-    return f"marginal: {what}"
+        reason = "a pair of multipliers is on the unit circle"
+    return f"marginal: {reason}"
 
 
 def low_discrepancy(dimension: int, count: int, seed: int, first: int = 0) -> np.ndarray:

@@ -44,12 +44,12 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
     elsewhere : callable, optional
         ``elsewhere(name, value, known_names)`` returns a text on where an unknown argument belongs, or an empty text.
     """
-    known = inspect.signature(function).parameters
-    names = [name for name, entry in known.items() if entry.kind is not entry.VAR_KEYWORD]
-    if len(names) < len(known):
+    parameters = inspect.signature(function).parameters
+    names = [name for name, entry in parameters.items() if entry.kind is not entry.VAR_KEYWORD]
+    if len(names) < len(parameters):
         return function
     called = function.__qualname__.rpartition("<locals>.")[2].removesuffix(".__init__")
-    shown = names[1:] if names[:1] in (["self"], ["cls"]) else names
+    listed = names[1:] if names[:1] in (["self"], ["cls"]) else names
 
     @wraps(function)
     def asked(*arguments: P.args, **options: P.kwargs) -> R:
@@ -57,13 +57,13 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
             return function(*arguments, **options)
         except TypeError:
             wrong = next((name for name in options if name not in names), None)
-            absent = _absent(known, arguments, options)
+            absent = _absent(parameters, arguments, options)
             if wrong is None and not absent:
                 raise
         if wrong is not None:
             hint = elsewhere(wrong, options[wrong], names) if elsewhere is not None else ""
-            hint = hint or (f"it has {', '.join(shown)}" if shown else "it takes none")
-            raise TypeError(f"{called} has no argument {wrong!r}{did_you_mean(wrong, shown)}; {hint}")
+            hint = hint or (f"it has {', '.join(listed)}" if listed else "it takes none")
+            raise TypeError(f"{called} has no argument {wrong!r}{did_you_mean(wrong, listed)}; {hint}")
         needed = " and ".join(
             f"{name} ({meaning})" if meaning else name
             for name, meaning in ((name, _meaning(inspect.getdoc(function), name)) for name in absent)
@@ -74,14 +74,14 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
 
 
 def _absent(
-    known: Mapping[str, inspect.Parameter], arguments: Sequence[Any], options: Mapping[str, Any]
+    parameters: Mapping[str, inspect.Parameter], arguments: Sequence[Any], options: Mapping[str, Any]
 ) -> list[str]:
     """Return the names of required arguments that are missing."""
-    by_position = [name for name, entry in known.items() if entry.kind <= entry.POSITIONAL_OR_KEYWORD]
+    by_position = [name for name, entry in parameters.items() if entry.kind <= entry.POSITIONAL_OR_KEYWORD]
     given = {*by_position[: len(arguments)], *options}
     return [
         name
-        for name, entry in known.items()
+        for name, entry in parameters.items()
         if entry.default is entry.empty and entry.kind is not entry.VAR_POSITIONAL and name not in given
     ]
 

@@ -61,8 +61,8 @@ def complex_figures(values: Iterable[complex]) -> str:
     """
 
     def text(value: complex) -> str:
-        apart = max(abs(abs(value) - 1.0), ROUNDING_APART) if abs(value) < 2.0 else 0.0
-        real, imaginary = (figures(part, min(apart, PART)) for part in (value.real, abs(value.imag)))
+        distance = max(abs(abs(value) - 1.0), ROUNDING_APART) if abs(value) < 2.0 else 0.0
+        real, imaginary = (figures(part, min(distance, PART)) for part in (value.real, abs(value.imag)))
         return real if imaginary == "0" else f"{real} {'+' if value.imag > 0.0 else '-'} {imaginary}i"
 
     return ", ".join(text(value) for value in values)
@@ -81,11 +81,15 @@ def figures_in(
     The values `others` are distinguished as well, unless they are closer than `same`.
     """
     width = within[1] - within[0]
-    apart = PART * width if 0.0 < width < math.inf else 0.0
-    known = sorted(others)
+    difference = PART * width if 0.0 < width < math.inf else 0.0
+    others_sorted = sorted(others)
 
     def text(value: float) -> str:
-        gaps = [abs(value - other) for other in known if abs(value - other) > max(same, ROUNDED * abs(value))]
-        return figures(value, min([apart, *(0.5 * gap for gap in gaps)]))
+        gaps = [
+            abs(value - other)
+            for other in others_sorted
+            if abs(value - other) > max(same, ROUNDED * abs(value))
+        ]
+        return figures(value, min([difference, *(0.5 * gap for gap in gaps)]))
 
     return text

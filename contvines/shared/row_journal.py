@@ -95,8 +95,8 @@ def rows_of_another(path: Path, header: Mapping[str, Any]) -> int:
         found = _data(first)
     except (OSError, ValueError, RecursionError):
         return 0
-    ours = isinstance(found, dict) and found.get("contvines") == header["contvines"]
-    return len(rows) - 1 if ours and found != header else 0
+    same_kind = isinstance(found, dict) and found.get("contvines") == header["contvines"]
+    return len(rows) - 1 if same_kind and found != header else 0
 
 
 def _data(line: bytes) -> Any:
@@ -107,9 +107,9 @@ def _data(line: bytes) -> Any:
     ValueError
         If the checksum is wrong.
     """
-    kept, _, text = line.partition(b" ")
+    checksum, _, text = line.partition(b" ")
     if line.startswith(b"{"):
         text = line
-    elif int(kept, 16) != zlib.crc32(text):
+    elif int(checksum, 16) != zlib.crc32(text):
         raise ValueError("a damaged line")
     return json.loads(text)

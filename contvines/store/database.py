@@ -131,8 +131,8 @@ class Store:
         path = Path(path)
         if not path.exists():
             if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-                why = "its folder is read-only" if path.parent.is_dir() else "there is no such folder"
-                raise StoreError(f"{path}: cannot be written ({why}); choose another place with -o.")
+                reason = "its folder is read-only" if path.parent.is_dir() else "there is no such folder"
+                raise StoreError(f"{path}: cannot be written ({reason}); choose another place with -o.")
             return cls(None, path, (fingerprint, study))
         with cls.open(path) as reader:
             reader.require(fingerprint)
@@ -250,8 +250,8 @@ class Store:
     def _renew(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:
         """Write an entry of the graph unless it is unchanged (arrays are never changed in place); return its kind and key."""
         scalars, arrays = split(content)
-        known = self._kept.get((kind, key))
-        if known is None or known[0] != scalars or not _same_arrays(known[1], arrays):
+        written = self._kept.get((kind, key))
+        if written is None or written[0] != scalars or not _same_arrays(written[1], arrays):
             self.put(kind, key, content)
             self._kept[kind, key] = (scalars, arrays)
         return kind, key
@@ -276,8 +276,8 @@ class Store:
         entries: dict[str, dict[str, Any]] = {}
         folders = self._folders()
         for kind, key, content in self._entries("e.kind != 'journal'"):  # one consistent checkpoint
-            known = found_again(printable(content), folders)
-            entries.setdefault(printable_text(kind), {})[printable_text(key)] = known
+            content_found = found_again(printable(content), folders)
+            entries.setdefault(printable_text(kind), {})[printable_text(key)] = content_found
         try:
             if "chart" in entries:
                 from contvines.loci.chart import chart_from_entries
@@ -302,9 +302,9 @@ class Store:
 
     def _folders(self) -> list[Path]:
         """Return the folders to search for machine files that were moved together with this file: its own, and that of its study."""
-        here, source = self.path.resolve().parent, (self.study or {}).get("source")
+        folder, source = self.path.resolve().parent, (self.study or {}).get("source")
         study = source.get("study") if isinstance(source, dict) else None
-        return [here, *([(here / study).resolve().parent] if isinstance(study, str) else [])]
+        return [folder, *([(folder / study).resolve().parent] if isinstance(study, str) else [])]
 
     # -- entries -------------------------------------------------------------------------------------------
 
@@ -391,11 +391,11 @@ class Store:
             If a check fails.
         """
         with self._guard():
-            ours = _objects_of_ours()
-            found = self._db.execute(_OBJECTS).fetchmany(len(ours) + 1)
-            if found != ours:
+            expected = _objects_of_ours()
+            found = self._db.execute(_OBJECTS).fetchmany(len(expected) + 1)
+            if found != expected:
                 names = {name for kind, name, *_ in found if kind == "table"}
-                missing = [name for kind, name, *_ in ours if kind == "table" and name not in names]
+                missing = [name for kind, name, *_ in expected if kind == "table" and name not in names]
                 raise damaged(
                     self.path,
                     f"it lacks the table {missing[0]!r}"

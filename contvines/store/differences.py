@@ -105,20 +105,20 @@ def _points(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
         if label not in renamed:
             yield f"{label} ({point['kind']} at {point['value']}) is missing"
             continue
-        now = after[renamed[label]]
+        later = after[renamed[label]]
         if renamed[label] != label and not any(
             other is not point and other["kind"] == point["kind"] and _gap(point, other) < AGREEMENT.end
             for other in before.values()
         ):
             yield f"{label} is called {renamed[label]}"
-        allowed = max(AGREEMENT.value, (point["error"] + now["error"]) / _size(point["value"]))
-        if _gap(point, now) > allowed:
-            yield f"{label} moved from {point['value']} to {now['value']}"
+        allowed = max(AGREEMENT.value, (point["error"] + later["error"]) / _size(point["value"]))
+        if _gap(point, later) > allowed:
+            yield f"{label} moved from {point['value']} to {later['value']}"
         for name in ("real", "criticality", "branch", "on"):
-            if name in point and point[name] != now[name]:
-                yield f"{label}: {name} was {point[name]} and is {now[name]}"
-        if "multipliers" in point and point["kind"] not in BORDERS and not _alike(point, now):
-            yield f"{label}: moduli of multipliers were {point['multipliers']} and are {now['multipliers']}"
+            if name in point and point[name] != later[name]:
+                yield f"{label}: {name} was {point[name]} and is {later[name]}"
+        if "multipliers" in point and point["kind"] not in BORDERS and not _alike(point, later):
+            yield f"{label}: moduli of multipliers were {point['multipliers']} and are {later['multipliers']}"
     for label in set(after) - set(renamed.values()):
         yield f"{label} ({after[label]['kind']} at {after[label]['value']}) is new"
 
@@ -168,13 +168,13 @@ def _entries(
         if label not in after:
             yield f"{called.format(label, **entry)} is missing"
             continue
-        now = after[label]
+        later = after[label]
         for name in names:
-            if entry[name] != now[name]:
-                yield f"{label}: {name} was {entry[name]} and is {now[name]}"
-        for name, was in intervals.items():
-            if not _same_intervals(entry[name], now[name]):
-                yield f"{label}: {was} {entry[name]} and {'are' if was.endswith('were') else 'is'} {now[name]}"
+            if entry[name] != later[name]:
+                yield f"{label}: {name} was {entry[name]} and is {later[name]}"
+        for name, sentence in intervals.items():
+            if not _same_intervals(entry[name], later[name]):
+                yield f"{label}: {sentence} {entry[name]} and {'are' if sentence.endswith('were') else 'is'} {later[name]}"
     for label in set(after) - set(before):
         yield f"{called.format(label, **after[label])} is new"
 
@@ -189,9 +189,9 @@ def _same_intervals(one: Stretches, other: Stretches) -> bool:
 def of_graph(graph: Graph) -> dict[str, Any]:
     """Return branches, special points and links of a graph for `differences`, from its documented JSON."""
     data = graph.to_dict()
-    kept = ("word", "periods", "symmetric", "real", "range", "stable", "closed")
+    names = ("word", "periods", "symmetric", "real", "range", "stable", "closed")
     return {
-        "branches": {entry["label"]: {name: entry[name] for name in kept} for entry in data["branches"]},
+        "branches": {entry["label"]: {name: entry[name] for name in names} for entry in data["branches"]},
         "points": {
             entry["label"]: {
                 "kind": entry["kind"],

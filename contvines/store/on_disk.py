@@ -88,11 +88,11 @@ def cut_short(path: Path) -> bool:
     return not pending(path) and (size % page != 0 or size < page * struct.unpack(">I", head[28:32])[0])
 
 
-def damaged(path: Path, why: str) -> StoreError:
+def damaged(path: Path, reason: str) -> StoreError:
     """Return the error for a damaged file; it also names the logs beside it, which SQLite would apply to a new file of the same name."""
     logs = [path.name + tail for tail in TAILS if path.with_name(path.name + tail).exists()]
-    beside = f" and with it {' and '.join(logs)}" if logs else ""
-    return StoreError(f"{path}: this file is damaged ({why}); move it away{beside}, and run again.")
+    logs_text = f" and with it {' and '.join(logs)}" if logs else ""
+    return StoreError(f"{path}: this file is damaged ({reason}); move it away{logs_text}, and run again.")
 
 
 def pending(path: Path) -> bool:
@@ -144,7 +144,7 @@ def publish(draft: Path, path: Path) -> None:
     if path.exists():
         raise FileExistsError
     orphans = [(path.with_name(path.name + tail), draft.with_name(draft.name + tail)) for tail in TAILS]
-    orphans = [(log, aside) for log, aside in orphans if _renamed(log, aside)]
+    orphans = [(log, backup) for log, backup in orphans if _renamed(log, backup)]
     try:
         try:
             os.link(draft, path)
@@ -155,12 +155,12 @@ def publish(draft: Path, path: Path) -> None:
                 raise FileExistsError from None
             os.rename(draft, path)
     except BaseException:
-        for log, aside in orphans:  # they may belong to the file that another process has made
-            _renamed(aside, log)
+        for log, backup in orphans:  # they may belong to the file that another process has made
+            _renamed(backup, log)
         raise
-    for _, aside in orphans:
+    for _, backup in orphans:
         with suppress(OSError):
-            aside.unlink()
+            backup.unlink()
 
 
 def _renamed(old: Path, new: Path) -> bool:

@@ -85,12 +85,12 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     list of Unbranched
         Attractors that were found and have no branch.
     """
-    kept, (low, high) = graph.settings, graph.within
-    limits = Limits.of(None, kept.get("bounds"), next(iter(graph.branches.values())).attached)
-    run = run_on(graph, int(kept.get("depth", 0)), bool(kept.get("virtual", False)), limits)
+    settings, (low, high) = graph.settings, graph.within
+    limits = Limits.of(None, settings.get("bounds"), next(iter(graph.branches.values())).attached)
+    run = run_on(graph, int(settings.get("depth", 0)), bool(settings.get("virtual", False)), limits)
     for p in np.linspace(low, high, CLOSED):
         _add(run, population.closed(float(p)), float(p))
-    met: list[Counted] = []
+    found_now: list[Counted] = []
     before, untraced = set(graph.branches), 0
 
     def keep(found: list[Counted], depth: int) -> None:
@@ -102,7 +102,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
             if spent or len(counted.u) > run.settings.longest:
                 counted.problem, untraced = None, untraced + spent
         join(run, found, depth)
-        met.extend(found)
+        found_now.extend(found)
 
     count, starts = population.brief
     for t in (np.arange(count) + 0.5) / count:
@@ -111,25 +111,25 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     handover = Handover(run, population)
     for end in handover.left():
         keep(handover.follow(end), run.depth)
-    left = _observed(population, met)
-    looked: set[float] = set()
+    left = _observed(population, found_now)
+    tried: set[float] = set()
     for at_least in (values, *[1] * PASSES) if values else ():
-        met.clear()
+        found_now.clear()
         unknown = unseen(gaps(graph), graph.within, [one.value for one in left if one.measures])
-        for p in sorted({*spread(unknown, graph.within, at_least)} - looked):
-            looked.add(p)
+        for p in sorted({*spread(unknown, graph.within, at_least)} - tried):
+            tried.add(p)
             keep(census(population, p, FEW, 0, run.journal), run.depth)
-        left += _observed(population, met)
+        left += _observed(population, found_now)
     for _ in range(HALVINGS if values else 0):
-        met.clear()
-        places, state = _about_the_largest(graph, left, looked)
+        found_now.clear()
+        places, state = _refinement(graph, left, tried)
         for p in places:
-            looked.add(p)
+            tried.add(p)
             starts = population.starts(FEW, 0, p)
             if state is not None and state.shape == starts[0].shape:
                 starts = np.vstack([state, starts])
             keep(followed(population, p, starts, f"largest/{p!r}", run.journal), run.depth)
-        left += _observed(population, met)
+        left += _observed(population, found_now)
     if untraced:
         spent = f"completion = {run.settings.completion} is spent: {untraced} motions that were met have no branch; raise it to trace them"
         graph.message, graph.complete = spent if graph.complete else f"{graph.message}; {spent}", False
@@ -151,17 +151,17 @@ def _add(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> N
                 run.tell(f"a motion in closed form at {p:.6g} is left: {refusal}", p)
 
 
-def _observed(population: Population, met: Sequence[Counted]) -> list[Unbranched]:
+def _observed(population: Population, counted_motions: Sequence[Counted]) -> list[Unbranched]:
     """Return the settled motions that lie on no branch, with their measures."""
     found = []
-    for counted in met:
-        about = counted.attractor
-        if about.branch is None and about.kind not in ON_ITS_WAY:
+    for counted in counted_motions:
+        attractor = counted.attractor
+        if attractor.branch is None and attractor.kind not in ON_ITS_WAY:
             try:
-                measures = population.observed(counted.state, about.value)
+                measures = population.observed(counted.state, attractor.value)
             except ValueError:  # the motion is unbounded
                 measures = {}
-            found.append(Unbranched(about.value, about.kind, measures, counted.state))
+            found.append(Unbranched(attractor.value, attractor.kind, measures, counted.state))
     return found
 
 
@@ -174,8 +174,8 @@ def _followed_longer(population: Population, graph: Graph, left: Sequence[Unbran
     one = max(left, key=lambda other: other.measures.get(name, -np.inf), default=None)
     if one is None or one.state is None or not one.measures.get(name, -np.inf) > _of_branches(graph):
         return [*left]
-    seen = population.observed(one.state, one.value, PATIENT)
-    longer = replace(one, measures=seen) if seen.get(name, -np.inf) > one.measures[name] else one
+    measured = population.observed(one.state, one.value, PATIENT)
+    longer = replace(one, measures=measured) if measured.get(name, -np.inf) > one.measures[name] else one
     return [longer if other is one else other for other in left]
 
 
@@ -184,8 +184,8 @@ def _of_branches(graph: Graph) -> float:
     return max((float(np.nanmax(s.response, initial=-np.inf)) for s in stretches(graph)), default=-np.inf)
 
 
-def _about_the_largest(
-    graph: Graph, left: Sequence[Unbranched], looked: Collection[float]
+def _refinement(
+    graph: Graph, left: Sequence[Unbranched], tried: Collection[float]
 ) -> tuple[list[float], np.ndarray | None]:
     """Return values at which the largest response without a branch is refined, and a state on its motion.
 
@@ -193,20 +193,20 @@ def _about_the_largest(
     much larger responses, or if the neighbours are near.
     """
     name, (low, high) = default_measure(graph), graph.within
-    known: dict[float, float] = {}
+    responses: dict[float, float] = {}
     for one in left:
-        known[one.value] = max(known.get(one.value, -np.inf), one.measures.get(name, -np.inf))
-    top = max(known, key=lambda value: known[value], default=low)
-    if not known.get(top, -np.inf) > PROMISING * _of_branches(graph):
+        responses[one.value] = max(responses.get(one.value, -np.inf), one.measures.get(name, -np.inf))
+    top = max(responses, key=lambda value: responses[value], default=low)
+    if not responses.get(top, -np.inf) > PROMISING * _of_branches(graph):
         return [], None
-    places = sorted({low, high, *known, *looked, *(end for gap in gaps(graph) for end in gap)})
+    places = sorted({low, high, *responses, *tried, *(end for gap in gaps(graph) for end in gap)})
     least = COVERAGE.least * (high - low)
     below = max((p for p in places if p < top - least), default=top)
     above = min((p for p in places if p > top + least), default=top)
-    flat = {p for p in (below, above) if known.get(p, -np.inf) >= NEARLY * known[top]}
-    beside = [p for p in (below, above) if p not in flat or abs(p - top) > FLAT * (high - low)]
-    state = next(one.state for one in left if one.value == top and one.measures.get(name) == known[top])
-    return [0.5 * (top + other) for other in beside], state
+    flat = {p for p in (below, above) if responses.get(p, -np.inf) >= NEARLY * responses[top]}
+    neighbours = [p for p in (below, above) if p not in flat or abs(p - top) > FLAT * (high - low)]
+    state = next(one.state for one in left if one.value == top and one.measures.get(name) == responses[top])
+    return [0.5 * (top + other) for other in neighbours], state
 
 
 VALUES = 5  # smallest number of values in the gaps

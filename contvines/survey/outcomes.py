@@ -63,20 +63,22 @@ def _highest(graph: Graph, measure: str | None = None) -> list[tuple[float, floa
 def peak(found: Findings) -> dict[str, float]:
     """Return the largest response over all coexisting motions, and its parameter value."""
     name = default_measure(found.graph)
-    known = _highest(found.graph)
-    known += [(float(measures.get(name, np.nan)), value) for value, measures, _ in found.simulated]
-    known += [(float(met.measures.get(name, np.nan)), met.value) for met in found.unbranched]
-    value, place = max((pair for pair in known if np.isfinite(pair[0])), default=(np.nan, np.nan))
+    responses = _highest(found.graph)
+    responses += [(float(measures.get(name, np.nan)), value) for value, measures, _ in found.simulated]
+    responses += [(float(motion.measures.get(name, np.nan)), motion.value) for motion in found.unbranched]
+    value, place = max((pair for pair in responses if np.isfinite(pair[0])), default=(np.nan, np.nan))
     return {"peak": value, "peak_at": place}
 
 
 def largest(found: Findings, measure: str) -> dict[str, float]:
     """Return the largest value of a measure over all coexisting stable motions, and its parameter value; nan if a simulated motion lacks the measure."""
-    known = _highest(found.graph, measure)
-    others = [(measures.get(measure, np.nan), value) for value, measures in _alone(found)]
+    responses = _highest(found.graph, measure)
+    others = [(measures.get(measure, np.nan), value) for value, measures in _without_branch(found)]
     if any(np.isnan(value) for value, _ in others):
-        known = []
-    value, place = max((pair for pair in known + others if np.isfinite(pair[0])), default=(np.nan, np.nan))
+        responses = []
+    value, place = max(
+        (pair for pair in responses + others if np.isfinite(pair[0])), default=(np.nan, np.nan)
+    )
     return {f"largest_{measure}": value, f"largest_{measure}_at": place}
 
 
@@ -87,25 +89,25 @@ def lower_peak(found: Findings) -> dict[str, float]:
     """
     name = default_measure(found.graph)
     grid, table = _compared(found.graph)
-    known = np.any(np.isfinite(table), axis=0)
+    finite = np.any(np.isfinite(table), axis=0)
     lowest = (
-        list(zip(np.nanmin(table[:, known], axis=0).tolist(), grid[known].tolist())) if known.any() else []
+        list(zip(np.nanmin(table[:, finite], axis=0).tolist(), grid[finite].tolist())) if finite.any() else []
     )
-    alone: dict[float, float] = {}
-    for value, measures in _alone(found):
-        alone[value] = min(alone.get(value, np.inf), float(measures.get(name, np.inf)))
-    lowest += [(response, value) for value, response in alone.items() if np.isfinite(response)]
+    lowest_alone: dict[float, float] = {}
+    for value, measures in _without_branch(found):
+        lowest_alone[value] = min(lowest_alone.get(value, np.inf), float(measures.get(name, np.inf)))
+    lowest += [(response, value) for value, response in lowest_alone.items() if np.isfinite(response)]
     top, place = max(lowest, default=(np.nan, np.nan))
     return {"lower_peak": top, "lower_peak_at": place}
 
 
-def _alone(found: Findings, simulated: bool = True) -> list[tuple[float, Mapping[str, float]]]:
+def _without_branch(found: Findings, simulated: bool = True) -> list[tuple[float, Mapping[str, float]]]:
     """Return (value, measures) of motions without a branch in the gaps of the diagram; with `simulated`, of simulated motions, too."""
-    seen = [(met.value, met.measures) for met in found.unbranched]
+    responses = [(motion.value, motion.measures) for motion in found.unbranched]
     if simulated:
-        seen += [(value, measures) for value, measures, _ in found.simulated]
+        responses += [(value, measures) for value, measures, _ in found.simulated]
     open_ = gaps(found.graph)
-    return [(value, measures) for value, measures in seen if any(a < value < b for a, b in open_)]
+    return [(value, measures) for value, measures in responses if any(a < value < b for a, b in open_)]
 
 
 def covered(found: Findings) -> dict[str, float]:
@@ -119,8 +121,8 @@ def covered(found: Findings) -> dict[str, float]:
 def _unknown_parts(found: Findings) -> list[tuple[float, float]]:
     """Return the intervals in which no stable response is known, neither from a branch nor by simulation."""
     name = default_measure(found.graph)
-    seen = [value for value, measures in _alone(found) if np.isfinite(measures.get(name, np.nan))]
-    return unseen(gaps(found.graph), found.graph.within, seen)
+    values = [value for value, measures in _without_branch(found) if np.isfinite(measures.get(name, np.nan))]
+    return unseen(gaps(found.graph), found.graph.within, values)
 
 
 def unknown(found: Findings) -> str:
@@ -141,12 +143,13 @@ def unknown(found: Findings) -> str:
             f"no stable motion is known in {100.0 * part:.3g} % of the interval, most of it {name} = {number(low)} to {number(high)}"
             f" {unit}".rstrip()
         )
-    kinds = dict.fromkeys(met.kind for met in found.unbranched)
+    kinds = dict.fromkeys(motion.kind for motion in found.unbranched)
     for kind in kinds:
-        where = sorted({met.value for met in found.unbranched if met.kind == kind})
-        more = f" and {len(where) - 1} more values" if len(where) > 1 else ""
+        values = sorted({motion.value for motion in found.unbranched if motion.kind == kind})
+        more = f" and {len(values) - 1} more values" if len(values) > 1 else ""
         reasons.append(
-            f"a motion without a branch ({kind}) is met at {name} = {number(where[0])} {unit}".rstrip() + more
+            f"a motion without a branch ({kind}) is met at {name} = {number(values[0])} {unit}".rstrip()
+            + more
         )
     if not kinds.keys().isdisjoint(UNBRANCHED):
         reasons.append("the largest response of such a motion is that of a finite run, and may be larger")
@@ -170,14 +173,14 @@ def modulated(found: Findings) -> dict[str, float]:
         the largest mean; ``modulated_strong``: share of these motions whose impacts stop and begin again (strong modulation).
     """
     low, high = found.graph.within
-    met = [one.measures for one in found.unbranched if np.isfinite(one.measures.get(BAND[1], np.nan))]
-    if not met:
+    measured = [one.measures for one in found.unbranched if np.isfinite(one.measures.get(BAND[1], np.nan))]
+    if not measured:
         return {"modulated": 0.0, **dict.fromkeys((*BAND, "modulated_strong"), np.nan)}
-    known = sum(b - a for a, b in gaps(found.graph)) - sum(b - a for a, b in _unknown_parts(found))
-    top = max(met, key=lambda measures: measures[BAND[1]])
-    strong = [is_strong(measures) for measures in met]
+    covered = sum(b - a for a, b in gaps(found.graph)) - sum(b - a for a, b in _unknown_parts(found))
+    top = max(measured, key=lambda measures: measures[BAND[1]])
+    strong = [is_strong(measures) for measures in measured]
     return {
-        "modulated": known / (high - low),
+        "modulated": covered / (high - low),
         **{name: top[name] for name in BAND},
         "modulated_strong": float(np.mean(strong)),
     }
@@ -191,17 +194,17 @@ def activation(found: Findings) -> dict[str, float]:
     contradicts them, and (from above) if the diagram has no motion without impacts: the branch that begins with impacts may then be missing.
     """
     low, high = found.graph.within
-    known = stretches(found.graph)
-    calm = [s for s in known if not s.branch.description.get("impacts")]
-    busy = [s for s in known if s.branch.description.get("impacts")]
+    parts = stretches(found.graph)
+    calm = [s for s in parts if not s.branch.description.get("impacts")]
+    busy = [s for s in parts if s.branch.description.get("impacts")]
     above = max((float(s.values.max()) for s in calm), default=np.nan)
     below = min((float(s.values.min()) for s in busy), default=np.nan)
     simulated = [(value, measures) for value, measures, _ in found.simulated]
     # outside of gaps, a motion without a branch coexists with stable branches and contradicts nothing
-    simulated += _alone(found, simulated=False)
-    told = [(value, m["impacts_per_period"]) for value, m in simulated if "impacts_per_period" in m]
-    beyond = any(not impacts and value > above for value, impacts in told)
-    before = any(impacts and value < below for value, impacts in told)
+    simulated += _without_branch(found, simulated=False)
+    impacting = [(value, m["impacts_per_period"]) for value, m in simulated if "impacts_per_period" in m]
+    beyond = any(not impacts and value > above for value, impacts in impacting)
+    before = any(impacts and value < below for value, impacts in impacting)
     return {
         "activation_from_below": above if above < high and not beyond else np.nan,
         "activation_from_above": below if below > low and calm and not before else np.nan,
@@ -253,11 +256,11 @@ def share(found: Findings, word: str) -> dict[str, float]:
 
     For an atlas: the mean and the smallest of the shares at the values with the most starts. Otherwise: the share among all simulated motions.
     """
-    met = found.graph.attractors
-    if met:
-        most = max(attractor.starts for attractor in met)
+    attractors = found.graph.attractors
+    if attractors:
+        most = max(attractor.starts for attractor in attractors)
         by_value: dict[float, float] = {}
-        for attractor in met:
+        for attractor in attractors:
             if attractor.starts == most:
                 own = attractor.share if attractor.word == word else 0.0
                 by_value[attractor.value] = by_value.get(attractor.value, 0.0) + own

@@ -121,12 +121,12 @@ def planned(vary: Mapping[str, object], sampling: str = "latin", samples: int = 
         raise PlanError(f"[survey] samples = {samples!r}: expected a whole number from 1 to {MOST}")
     axes: dict[str, np.ndarray] = {}
     uncertain: dict[str, Law] = {}
-    for name, said in vary.items():
-        values = _axis(name, said)
+    for name, given in vary.items():
+        values = _axis(name, given)
         if values is not None:
             axes[name] = values
-        elif isinstance(said, Mapping):
-            uncertain[name] = _distribution(name, said)
+        elif isinstance(given, Mapping):
+            uncertain[name] = _distribution(name, given)
     drawn = _drawn(uncertain, sampling, samples, seed) if uncertain else {}
     plan = Plan(axes, drawn)
     if len(plan) > MOST:
@@ -134,21 +134,21 @@ def planned(vary: Mapping[str, object], sampling: str = "latin", samples: int = 
     return plan
 
 
-def _axis(name: str, said: object) -> np.ndarray | None:
+def _axis(name: str, given: object) -> np.ndarray | None:
     """Return the values of a parameter on an axis; None for an uncertain parameter."""
     place = f"[survey] vary.{name}"
-    if isinstance(said, Mapping):
-        unknown = [key for key in said if key not in KEYS]
+    if isinstance(given, Mapping):
+        unknown = [key for key in given if key not in KEYS]
         if unknown:
             hint = did_you_mean(str(unknown[0]), KEYS)
             raise PlanError(
                 f"{place}.{unknown[0]}: there is no such field{hint}; {', '.join(KEYS)} are known"
             )
-        if "values" in said:
-            said = said["values"]
-        elif "count" in said:
-            low, high = _two(f"{place}.within", said.get("within"))
-            count = said["count"]
+        if "values" in given:
+            given = given["values"]
+        elif "count" in given:
+            low, high = _two(f"{place}.within", given.get("within"))
+            count = given["count"]
             if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
                 raise PlanError(f"{place}.count = {count!r}: expected a whole number from 1 to {MOST}")
             if not low < high:
@@ -156,34 +156,34 @@ def _axis(name: str, said: object) -> np.ndarray | None:
             return np.linspace(low, high, count)
         else:
             return None
-    if not isinstance(said, list | tuple | np.ndarray) or not len(said):
+    if not isinstance(given, list | tuple | np.ndarray) or not len(given):
         raise PlanError(
-            f"{place} = {said!r}: expected a list of values, or within and count; what is uncertain has uniform = [from, to] or normal = [mean, deviation]"
+            f"{place} = {given!r}: expected a list of values, or within and count; what is uncertain has uniform = [from, to] or normal = [mean, deviation]"
         )
-    return np.array([_number(f"{place}[{i}]", value) for i, value in enumerate(said)])
+    return np.array([_number(f"{place}[{i}]", value) for i, value in enumerate(given)])
 
 
-def _distribution(name: str, said: Mapping[str, object]) -> Law:
+def _distribution(name: str, given: Mapping[str, object]) -> Law:
     from scipy import stats
 
     place = f"[survey] vary.{name}"
-    if "normal" in said:
-        mean, deviation = _two(f"{place}.normal", said["normal"])
+    if "normal" in given:
+        mean, deviation = _two(f"{place}.normal", given["normal"])
         if not deviation > 0.0:
             raise PlanError(
                 f"{place}.normal = [{mean:g}, {deviation:g}]: expected [mean, deviation], the second above 0"
             )
-        if "within" not in said:
+        if "within" not in given:
             return stats.norm(mean, deviation)
-        low, high = _ends(place, "within", said)
+        low, high = _ends(place, "within", given)
         return stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
-    key = "uniform" if "uniform" in said else "within"
-    low, high = _ends(place, key, said)
+    key = "uniform" if "uniform" in given else "within"
+    low, high = _ends(place, key, given)
     return stats.uniform(low, high - low)
 
 
-def _ends(place: str, key: str, said: Mapping[str, object]) -> tuple[float, float]:
-    low, high = _two(f"{place}.{key}", said.get(key))
+def _ends(place: str, key: str, given: Mapping[str, object]) -> tuple[float, float]:
+    low, high = _two(f"{place}.{key}", given.get(key))
     if not low < high:
         raise PlanError(f"{place}.{key} = [{low:g}, {high:g}]: expected low < high")
     return low, high

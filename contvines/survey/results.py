@@ -79,11 +79,11 @@ class Survey(Resumable):
         notes = np.full(len(plan), "", dtype=object)
         for row in ordered:
             notes[row.index] = row.note
-        known = (*plan.names, *columns)
-        said, labels = (
-            {name: table[name] for name in known if table.get(name)} for table in (units, notation or {})
+        listed = (*plan.names, *columns)
+        shown_units, labels = (
+            {name: table[name] for name in listed if table.get(name)} for table in (units, notation or {})
         )
-        return cls(plan, columns, notes.reshape(plan.shape), said, about, labels)
+        return cls(plan, columns, notes.reshape(plan.shape), shown_units, about, labels)
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name in self.columns:
@@ -247,7 +247,7 @@ class Survey(Resumable):
 
     def __repr__(self) -> str:
         counts = {"failed": self.failed, "not done yet": self.waiting}
-        more = "".join(f", {count} {what}" for what, count in counts.items() if count)
+        more = "".join(f", {count} {state}" for state, count in counts.items() if count)
         return f"Survey({len(self.plan)} systems over {', '.join(self.plan.names)}: {', '.join(self.columns) or 'no outcomes'}{more})"
 
     def __str__(self) -> str:
@@ -257,20 +257,20 @@ class Survey(Resumable):
         return f"<p>{html.escape(self._title())}</p>{self._table().html()}"
 
     def _title(self) -> str:
-        about = f"{len(self.plan)} systems over {', '.join(self.plan.names)}"
+        text = f"{len(self.plan)} systems over {', '.join(self.plan.names)}"
         if self.failed:
-            about += f"; {self.failed} of them failed, the column note says why"
+            text += f"; {self.failed} of them failed, the column note says why"
         if self.waiting:
-            about += f"; {self.waiting} not done yet"
+            text += f"; {self.waiting} not done yet"
         if self.partly:
-            about += f"; {self.partly} known in part, the column note says why"
-        return about
+            text += f"; {self.partly} known in part, the column note says why"
+        return text
 
     def _table(self) -> Table:
         rows: list[tuple[str, ...]] = []
         for name, values in self.columns.items():
-            known = values[np.isfinite(values)]
-            numbers = [figures(f(known)) if known.size else "-" for f in (np.min, np.median, np.max)]
+            finite = values[np.isfinite(values)]
+            numbers = [figures(f(finite)) if finite.size else "-" for f in (np.min, np.median, np.max)]
             rows.append((name, *numbers, self.units.get(name, "")))
         return Table(("outcome", "smallest", "median", "largest", "unit"), rows)
 
@@ -286,10 +286,10 @@ def load_survey(path: str | Path) -> Survey:
     data = read(Path(path))
     damaged = PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged")
     try:
-        about = json.loads(data.attrs["about"])
+        metadata = json.loads(data.attrs["about"])
         # in the order of the dimensions; the JSON text about the survey has them in alphabetic order
-        axes = {str(name): data[name].values for name in data["note"].dims if name in about["axes"]}
-        samples = {str(name): data[name].values for name in data.coords if name in about["samples"]}
+        axes = {str(name): data[name].values for name in data["note"].dims if name in metadata["axes"]}
+        samples = {str(name): data[name].values for name in data.coords if name in metadata["samples"]}
         columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
         units, notation = (
             {str(n): str(v.attrs[key]) for n, v in data.variables.items() if key in v.attrs and n != "note"}
@@ -302,7 +302,7 @@ def load_survey(path: str | Path) -> Survey:
         raise damaged from None
     if not whole:
         raise damaged
-    return Survey(plan, columns, notes, units, about, notation)
+    return Survey(plan, columns, notes, units, metadata, notation)
 
 
 FORMAT = "contvines survey 2"  # format 1 had no digest
@@ -365,5 +365,5 @@ def _sound(content: bytes) -> bool:
     before, mark, after = content.partition(MARK)
     if not mark:
         return FORMAT.encode() not in content
-    kept, rest = after[: len(BLANK)], after[len(BLANK) :]
-    return hashlib.sha256(before + mark + BLANK + rest).hexdigest().encode() == kept
+    digest, rest = after[: len(BLANK)], after[len(BLANK) :]
+    return hashlib.sha256(before + mark + BLANK + rest).hexdigest().encode() == digest

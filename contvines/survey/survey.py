@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 MEANING = 3  # version of the meaning of rows; rows of a journal with another version are not reused
 
 
-def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outcome:
+def outcome_named(wanted: str, more: Mapping[str, Outcome] | None = None) -> Outcome:
     """Return the outcome function with a name, such as ``peak`` or ``stable:LR``.
 
     Parameters
     ----------
-    said : str
+    wanted : str
         The name.
     more : mapping, optional
         Further outcomes by name, besides `contvines.survey.outcomes.PLAIN`.
@@ -45,18 +45,20 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
     PlanError
         If there is no such outcome.
     """
-    known = {**PLAIN, **(more or {})}
-    if said in known:
-        return known[said]
-    kind, _, argument = said.partition(":")
+    functions = {**PLAIN, **(more or {})}
+    if wanted in functions:
+        return functions[wanted]
+    kind, _, argument = wanted.partition(":")
     if kind == "first" and argument and argument not in BY_NAME:
         raise PlanError(
-            f"[survey] outcomes: {said!r}: there are no points of this kind{did_you_mean(argument, BY_NAME)}; known are {', '.join(BY_NAME)}"
+            f"[survey] outcomes: {wanted!r}: there are no points of this kind{did_you_mean(argument, BY_NAME)}; known are {', '.join(BY_NAME)}"
         )
     if kind in MADE and argument:
         return partial(MADE[kind], **{ARGUMENTS[kind]: argument})
     forms = [f"{name}:..." for name in MADE]
-    raise PlanError(f"[survey] outcomes: {said!r} is unknown; choose among {', '.join([*known, *forms])}")
+    raise PlanError(
+        f"[survey] outcomes: {wanted!r} is unknown; choose among {', '.join([*functions, *forms])}"
+    )
 
 
 @hinting
@@ -141,17 +143,17 @@ def survey(
     digest = digest_of(plan, over, job.within, about)
     if cluster is not None:
         needed("distributed", "surveys")
-    kept = (
+    row_file = (
         journal
         if isinstance(journal, Rows)
         else Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest}, Row)
     )
-    with kept as rows, counted(len(systems), "systems", progress) as tell:
-        known = {row.index for row in rows.found}
+    with row_file as rows, counted(len(systems), "systems", progress) as tell:
+        done = {row.index for row in rows.found}
         near: Sequence[object] = [None] * len(systems)
         if isinstance(family, Carrying) and not swept:
             near = family.starts(systems, plan.neighbours())
-        tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in known]
+        tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in done]
         stopped = False
         try:
             with closing(pools.worked(job, tasks, workers, cluster)) as worked:
@@ -161,15 +163,15 @@ def survey(
                         tell(row)
         except KeyboardInterrupt:
             stopped = True
-        known = {row.index: row for row in rows.found}
-        found = [known.get(i) or Row(i, {}, NOT_YET) for i in range(len(systems))]
+        done = {row.index: row for row in rows.found}
+        found = [done.get(i) or Row(i, {}, NOT_YET) for i in range(len(systems))]
     result = Survey.of(plan, found, dict(units or {}), {**description, "digest": digest}, notation_of(family))
     if stopped:
-        again = partial(
+        rerun = partial(
             survey, family, plan, over=over, within=within, outcomes=outcomes, gaps=gaps, values=values, starts=starts, atlas=atlas, swept=swept,
-            workers=workers, cluster=cluster, journal=kept, units=units, about=about, progress=progress, interrupt=interrupt, **options,
+            workers=workers, cluster=cluster, journal=row_file, units=units, about=about, progress=progress, interrupt=interrupt, **options,
         )  # fmt: skip
-        unfinished(result, again)
+        unfinished(result, rerun)
         if interrupt == "raise":
             raise Interrupted(result)
     return result

@@ -145,10 +145,10 @@ def work(job: Job, index: int, values: Mapping[str, float], near: object = None)
 def _swept(job: Job, family: Sweeping, values: Mapping[str, float]) -> dict[str, float]:
     """Return the outcomes by simulation alone: the largest response, and the largest over the values of the lowest response at each value."""
     grid = np.linspace(*job.within, job.swept).tolist()
-    seen = [(p, x) for p, x in family.swept(values, job.over, grid) if np.isfinite(x)]
-    lowest = {p: min(responses) for p in grid if (responses := [x for at, x in seen if at == p])}
+    responses_at = [(p, x) for p, x in family.swept(values, job.over, grid) if np.isfinite(x)]
+    lowest = {p: min(responses) for p in grid if (responses := [x for at, x in responses_at if at == p])}
     found = {"covered": len(lowest) / len(grid)}
-    for name, motions in (("peak", seen), ("lower_peak", list(lowest.items()))):
+    for name, motions in (("peak", responses_at), ("lower_peak", list(lowest.items()))):
         at, response = max(motions, key=lambda motion: motion[1], default=(np.nan, np.nan))
         found |= {name: response, f"{name}_at": at}
     return found

@@ -145,10 +145,10 @@ def scaled_product(A, D, twist, re, im):
     for i in range(length):
         before[i] = P
         powers.append(power)
-        known = _matrix_in_range(M[i] @ P)
-        if known is None or not known[0].any():
+        ranged = _matrix_in_range(M[i] @ P)
+        if ranged is None or not ranged[0].any():
             return False
-        P, power = known[0], power + known[1]
+        P, power = ranged[0], power + ranged[1]
     # from the other end: bound on the rounding of the product, in units of 2^power
     bound = np.zeros(n)
     after, back = np.eye(n), 0
@@ -156,10 +156,10 @@ def scaled_product(A, D, twist, re, im):
         moved = (np.abs(M[i])[:, :, None] * np.abs(before[i])[None]).sum(axis=(1, 2))
         factor = math.ldexp(1.0, min(max(powers[i] + back - power, -1000), 900))
         bound += np.abs(after) @ moved * factor
-        known = _matrix_in_range(after @ M[i])
-        if known is None:
+        ranged = _matrix_in_range(after @ M[i])
+        if ranged is None:
             return False
-        after, back = known[0], back + known[1]
+        after, back = ranged[0], back + ranged[1]
         if not after.any():
             break
     error = n * UNIT_ROUNDOFF * max(float(np.abs(P).sum(axis=1).max()), float(bound.max()))
