@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from contvines.command import best
-from contvines.command.best import read_wish
+from contvines.command.best import read_goal
 from contvines.command.cli import main
 from contvines.command.compose import machine
 from contvines.command.study import read_study
@@ -99,7 +99,7 @@ def test_the_choice_is_at_worst_as_good_as_the_worst_of_every_sample_of_the_surv
 )
 def test_wishes(text, wish):
     with nullcontext() if wish else pytest.raises(ValueError, match=r"^--best"):
-        assert read_wish(text) == wish
+        assert read_goal(text) == wish
 
 
 def test_from_which_shaking_on_is_where_simulated_impacts_begin_and_end(tmp_path, monkeypatch, capsys):

@@ -46,7 +46,7 @@ BESIDE = {
 FORM = 'for example "lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak"'
 
 
-class Wish(NamedTuple):
+class Goal(NamedTuple):
     """The goal of ``--best``: largest or lowest, the quantile over the samples (None: the worst sample), the outcome."""
 
     largest: bool
@@ -59,7 +59,7 @@ class Wish(NamedTuple):
         return "at worst" if self.quantile is None else f"{100.0 * self.quantile:g} %"
 
 
-def read_wish(text: str) -> Wish:
+def read_goal(text: str) -> Goal:
     """Parse the text of ``--best``.
 
     Raises
@@ -81,7 +81,7 @@ def read_wish(text: str) -> Wish:
         rest = rest[1:]
     if len(rest) != 1:
         raise ValueError(f"--best {text!r} names {'no' if not rest else 'more than one'} outcome; {FORM}.")
-    return Wish(words[0] in HIGH, quantile, rest[0])
+    return Goal(words[0] in HIGH, quantile, rest[0])
 
 
 def check_over(study: Study, over: list[str]) -> None:
@@ -104,13 +104,13 @@ def check_over(study: Study, over: list[str]) -> None:
 
 def asking(study: Study, outcome: str) -> Study:
     """Return the study with an outcome added to those of its survey, unless it is among them."""
-    said = study.survey.outcomes
-    if outcome.partition(":")[0] in ("stable", "first", "share") or outcome in said:
+    outcomes = study.survey.outcomes
+    if outcome.partition(":")[0] in ("stable", "first", "share") or outcome in outcomes:
         return study
-    prefixes = tuple(one.replace(":", "_") for one in said if ":" in one)
-    if outcome.startswith(prefixes) or any(outcome in BESIDE.get(one, ()) for one in said):
+    prefixes = tuple(one.replace(":", "_") for one in outcomes if ":" in one)
+    if outcome.startswith(prefixes) or any(outcome in BESIDE.get(one, ()) for one in outcomes):
         return study
-    return study.having("survey", outcomes=[*said, outcome])
+    return study.having("survey", outcomes=[*outcomes, outcome])
 
 
 def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
@@ -137,7 +137,7 @@ def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
     from ..survey.work import Job, work
 
     plan, model = plan_and_machine(study)
-    largest, quantile, outcome = wish = read_wish(text)
+    largest, quantile, outcome = goal = read_goal(text)
     if outcome not in found.columns:
         raise ValueError(
             f"--best {text!r}: the survey has no outcome {outcome}; it has {', '.join(found.columns) or 'none'}."
@@ -155,10 +155,10 @@ def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
 
     heights = found.judged(outcome, largest, quantile, least).ravel()
     if not np.isfinite(heights).any():
-        why = next((str(note) for note in found.notes.ravel() if note), "no machine has a number for it")
+        reason = next((str(note) for note in found.notes.ravel() if note), "no machine has a number for it")
         raise ValueError(
-            f"--best {text!r}: {outcome} is not known of any machine{' with all its samples' if plan.samples else ''} ({why}); "
-            f"more depth in [continue], or atlas = true in [survey], finds more motions{_in_part(found, wish)}."
+            f"--best {text!r}: {outcome} is not known of any machine{' with all its samples' if plan.samples else ''} ({reason}); "
+            f"more depth in [continue], or atlas = true in [survey], finds more motions{_in_part(found, goal)}."
         )
     points = [dict(zip(plan.axes, map(float, point))) for point in itertools.product(*plan.axes.values())]
     drawn = [dict(zip(plan.samples, map(float, row))) for row in zip(*plan.samples.values())] or [{}]
@@ -175,47 +175,47 @@ def tell_choice(
     from ..survey.outcomes import KNOWN
     from .plot import compared_text, peaks_compared
 
-    wish, least = read_wish(text), KNOWN if covered is None else covered
-    outcome = wish.outcome
+    goal, least = read_goal(text), KNOWN if covered is None else covered
+    outcome = goal.outcome
     choice, (_, model) = choose(study, text, least, found), plan_and_machine(study)
     units = units_of(study, model)
-    alone = outcome in PEAKS and study.sort is Sort.PHYSICAL and "damping" in model.parameter_names
-    asked = (model.with_(**choice.values) if alone else model, study.parameter, study.within, ALONE)
+    solo = outcome in PEAKS and study.sort is Sort.PHYSICAL and "damping" in model.parameter_names
+    asked = (model.with_(**choice.values) if solo else model, study.parameter, study.within, ALONE)
     if json_:
-        about = {"best": choice.values, outcome: choice.outcome, "others": choice.others}
-        if alone:
-            about["compared"] = peaks_compared(*asked)
+        data = {"best": choice.values, outcome: choice.outcome, "others": choice.others}
+        if solo:
+            data["compared"] = peaks_compared(*asked)
         named = {*choice.values, outcome, *choice.others}
-        if said := {name: unit for name, unit in units.items() if name in named}:
-            about["units"] = said
-        tell(choice, about)
+        if shown_units := {name: unit for name, unit in units.items() if name in named}:
+            data["units"] = shown_units
+        tell(choice, data)
     elif not quiet:
-        typer.echo(fitted(_choice_text(choice, wish, found, units, least)))
-        if alone:
+        typer.echo(fitted(_choice_text(choice, goal, found, units, least)))
+        if solo:
             typer.echo(fitted(compared_text(*asked)))
-    draw(plot, lambda: _picture(found, choice, wish), quiet)
+    draw(plot, lambda: _picture(found, choice, goal), quiet)
 
 
-def _in_part(found: Survey, wish: Wish) -> str:
+def _in_part(found: Survey, goal: Goal) -> str:
     """Describe the choice if the median of the known shares were accepted (option ``--covered``); empty if nothing is known."""
     share = found["covered"].min(axis=-1) if found.plan.samples else found["covered"]
     if not np.isfinite(share).any():
         return ""
     least = math.floor(1000.0 * float(np.nanmedian(share))) / 1000.0
     try:
-        point, number = found.best(wish.outcome, wish.largest, wish.quantile, least)
+        point, number = found.best(goal.outcome, goal.largest, goal.quantile, least)
     except ValueError:
         return ""
     place = ", ".join(f"{name} = {figures(value)}" for name, value in point.items())
     return f"; with --covered {least:g}, which takes what is known of the better half, it is {figures(number)} at {place}"
 
 
-def _picture(found: Survey, choice: Choice, wish: Wish) -> Figure:
+def _picture(found: Survey, choice: Choice, goal: Goal) -> Figure:
     """Return the survey's picture with the choice, and the points tried in the search, marked."""
-    figure, names = found.plot(wish.outcome), list(found.plan.axes)
+    figure, names = found.plot(goal.outcome), list(found.plan.axes)
     axes, red = figure.axes[0], "#b5121b"
     places = [(*(values[name] for name in names), outcome)[:2] for values, outcome in choice.tried]
-    label = f"tried, {wish.over}" if len(names) == 1 else "tried"
+    label = f"tried, {goal.over}" if len(names) == 1 else "tried"
     axes.plot(*zip(*sorted(places)), ".", color=red, label=label)
     x, y, *_ = *(choice.values[name] for name in names), choice.outcome
     axes.plot(x, y, "*", color=red, markersize=14, markeredgecolor="white", label="chosen")
@@ -224,30 +224,30 @@ def _picture(found: Survey, choice: Choice, wish: Wish) -> Figure:
     return figure
 
 
-def _choice_text(choice: Choice, wish: Wish, found: Survey, units: dict[str, str], least: float) -> str:
+def _choice_text(choice: Choice, goal: Goal, found: Survey, units: dict[str, str], least: float) -> str:
     """Describe the choice: its values, its outcome, and its other outcomes with their ranges over the survey."""
 
-    def shown(name: str, value: float) -> str:
+    def text(name: str, value: float) -> str:
         return f"{figures(value)} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
 
-    lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
-    which = f"the {'largest' if wish.largest else 'lowest'} that was found"
+    lines = [f"{name} = {text(name, value)}" for name, value in choice.values.items()]
+    extent = f"the {'largest' if goal.largest else 'lowest'} that was found"
     samples = found.plan.shape[-1] if found.plan.samples else 1
     if samples > 1:
-        over = wish.over if wish.quantile is None else f"in {wish.over} of the cases"
-        which = f"{over} over {samples} samples, {which}"
-    lines.append(f"{wish.outcome} = {shown(wish.outcome, choice.outcome)}, {which}")
-    unknown = np.count_nonzero(~np.isfinite(found.known(wish.outcome, least)))
+        over = goal.over if goal.quantile is None else f"in {goal.over} of the cases"
+        extent = f"{over} over {samples} samples, {extent}"
+    lines.append(f"{goal.outcome} = {text(goal.outcome, choice.outcome)}, {extent}")
+    unknown = np.count_nonzero(~np.isfinite(found.known(goal.outcome, least)))
     if unknown:
         lines.append(
-            f"left out: {unknown} of {len(found.plan)} machines of which {wish.outcome} is not known; the column note says why"
+            f"left out: {unknown} of {len(found.plan)} machines of which {goal.outcome} is not known; the column note says why"
         )
     if choice.others:
         middle = ", medians of the samples" if found.plan.samples else ""
         lines += ["", f"there, beside it{middle} (and from ... to ... over the survey):"]
         for name, value in choice.others.items():
             column = found.columns.get(name, np.array([]))
-            known = column[np.isfinite(column)]
-            span = f"  ({figures(known.min())} to {figures(known.max())})" if known.size else ""
-            lines.append(f"  {name} = {shown(name, value)}{span}")
+            finite = column[np.isfinite(column)]
+            span = f"  ({figures(finite.min())} to {figures(finite.max())})" if finite.size else ""
+            lines.append(f"  {name} = {text(name, value)}{span}")
     return "\n".join(lines)

@@ -96,17 +96,17 @@ def calibrate(
         check_shaken(read, names)
     model, guesses = _guesses(read, names)
     bounds = _limits(limits or [], names, model)
-    known = {"unknown": guesses, "limits": bounds, "fixed": read.loose, "confidence": confidence}
+    arguments = {"unknown": guesses, "limits": bounds, "fixed": read.loose, "confidence": confidence}
     path = sweep if impacts is None else impacts
     assert path is not None
     try:
         if impacts is not None:
-            found, look = _from_impacts(read, model, path, release, known)
+            found, look = _from_impacts(read, model, path, release, arguments)
         else:
-            found, look = _from_sweep(read, model, path, measure, known)
+            found, look = _from_sweep(read, model, path, measure, arguments)
     except ValueError as error:
-        said = str(error).rstrip(".")
-        raise ValueError(f"{said}." if said.startswith(str(path)) else f"{path}: {said}.") from None
+        text = str(error).rstrip(".")
+        raise ValueError(f"{text}." if text.startswith(str(path)) else f"{path}: {text}.") from None
     units = {name: model.units[name] for name in names if model.units.get(name)}
     tell(fitted(calibration_text(found, units, guesses)), as_json(found, units) if json_ else None)
     if plot is not None:
@@ -164,11 +164,11 @@ def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
     from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
-    known = list(model.tables.quantities if study.sort is Sort.PHYSICAL else model.amount_names)
+    names_known = list(model.tables.quantities if study.sort is Sort.PHYSICAL else model.amount_names)
     for name in names:
-        if name not in known:
+        if name not in names_known:
             raise ValueError(
-                f"--unknown {name}: the model {study.name!r} has no such parameter{near_quantity(name, known)}; it has {', '.join(known)}."
+                f"--unknown {name}: the model {study.name!r} has no such parameter{near_quantity(name, names_known)}; it has {', '.join(names_known)}."
             )
         if study.sort is Sort.PHYSICAL:
             model = model.given_by(name)
@@ -176,9 +176,9 @@ def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
     return model, {name: float(values[name]) for name in names}
 
 
-def _limits(said: list[str], names: list[str], model: Model) -> dict[str, tuple[float, float]]:
+def _limits(texts: list[str], names: list[str], model: Model) -> dict[str, tuple[float, float]]:
     found = {}
-    for text in said:
+    for text in texts:
         name, _, ends = text.partition("=")
         parts = ends.split(",")
         if name not in names:
@@ -194,12 +194,12 @@ def _limits(said: list[str], names: list[str], model: Model) -> dict[str, tuple[
     return found
 
 
-def _limit(text: str, name: str, said: str, model: Model) -> float:
+def _limit(text: str, name: str, given: str, model: Model) -> float:
     """Return one end of the interval in which an estimate may lie, in the machine's unit."""
     try:
-        value = amount("", said, name, model.units)
+        value = amount("", given, name, model.units)
         if isinstance(model, Physical) and model.units.get(name):
-            number_of(model, name, f"{value!r} {model.units[name]}", said)
+            number_of(model, name, f"{value!r} {model.units[name]}", given)
         else:
             model.check_value(name, value)
     except ValueError as error:
@@ -208,7 +208,7 @@ def _limit(text: str, name: str, said: str, model: Model) -> float:
 
 
 def _from_impacts(
-    study: Study, model: Model, path: Path, release: str | None, known: dict[str, Any]
+    study: Study, model: Model, path: Path, release: str | None, arguments: dict[str, Any]
 ) -> tuple[Calibration, dict[str, Any]]:
     from orbits.design.calibration import from_impacts
 
@@ -225,11 +225,11 @@ def _from_impacts(
         start, model = {"q1": displacement, "q2": displacement}, model.changed(forcing=0.0)
     ylabel = with_unit("measured less computed", second)
     look = {"places": times, "heights": None, "xlabel": with_unit("time", second), "ylabel": ylabel}
-    return from_impacts(model, times, start=start, **known), look
+    return from_impacts(model, times, start=start, **arguments), look
 
 
 def _from_sweep(
-    study: Study, model: Model, path: Path, measure: str | None, known: dict[str, Any]
+    study: Study, model: Model, path: Path, measure: str | None, arguments: dict[str, Any]
 ) -> tuple[Calibration, dict[str, Any]]:
     from orbits.attractors.attractor import measure_names
     from orbits.design.calibration import from_sweep
@@ -240,7 +240,7 @@ def _from_sweep(
     over, name = study.parameter, measure or next(name for name in names if name.startswith("max_"))
     if name not in names:
         raise ValueError(f"--measure {name}: a simulation tells {', '.join(names)}.")
-    if over in known["unknown"]:
+    if over in arguments["unknown"]:
         raise ValueError(
             f"--unknown {over}: this is what was swept ([continue] parameter); estimate something else."
         )
@@ -251,4 +251,4 @@ def _from_sweep(
             number_of(model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}")
     ylabel = axis_label(name, unit=unit or None, notation=model.notation)
     look = {"places": values, "heights": heights, "xlabel": with_unit(over, own), "ylabel": ylabel}
-    return from_sweep(model, over, values, heights, measure=name, **known), look
+    return from_sweep(model, over, values, heights, measure=name, **arguments), look

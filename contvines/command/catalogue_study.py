@@ -67,18 +67,18 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     loose = {key: value for key, value in parameters.items() if key not in own}
     given = {key: value for key, value in parameters.items() if key in own}
     try:
-        made = machine_of({"name": name, **given, **values_of(file, [CONTACT_TIME.name])})
+        catalogued = machine_of({"name": name, **given, **values_of(file, [CONTACT_TIME.name])})
     except ValueError as error:
         raise StudyError(f"[model] {error}") from error
-    return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=made, loose=loose))
+    return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=catalogued, loose=loose))
 
 
 def _without_machine(data: dict[str, Any], model: object, name: object) -> list[str]:
     """Return all errors of a study whose model is unknown that can be found without it."""
-    known = (*NAMES, *PAGES, STRUCTURE)
-    names = f'{", ".join(map(repr, known))}, or a machine of your own, "FILE.py:NAME"'
+    machines = (*NAMES, *PAGES, STRUCTURE)
+    names = f'{", ".join(map(repr, machines))}, or a machine of your own, "FILE.py:NAME"'
     if name is not None:
-        hint = did_you_mean(name, known) if isinstance(name, str) else ""
+        hint = did_you_mean(name, machines) if isinstance(name, str) else ""
         wrong = f"[model] name = {repr(name)[:60]}: there is no such machine{hint}; expected {names}."
     elif isinstance(model, dict):
         wrong = f"[model] name is missing; expected {names}."

@@ -148,8 +148,8 @@ class Plane(NamedTuple):
         model = {
             name: value for name, value in graph.model.items() if name != "page"
         }  # wherever its file lies
-        of = "chart", model, graph.parameter, list(graph.within), values
-        text = json.dumps([*of, self.over, list(self.within), self.virtual])
+        parts = "chart", model, graph.parameter, list(graph.within), values
+        text = json.dumps([*parts, self.over, list(self.within), self.virtual])
         return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -177,27 +177,27 @@ def _diagram(
     from .run import diagram
     from .study import read_study
 
-    known = is_database(file)
-    said = None if known else read_study(file).chart
-    over = over or (None if said is None else said.parameter)
-    if known and (over is None or within is None):
+    computed = is_database(file)
+    section = None if computed else read_study(file).chart
+    over = over or (None if section is None else section.parameter)
+    if computed and (over is None or within is None):
         missing = "--over" if over is None else "--within"
         raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
-    if over is None or (within is None and said is None):
+    if over is None or (within is None and section is None):
         raise ValueError(
             f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
             "parameter and within."
         )
-    if not known:
+    if not computed:
         diagram(file, quiet=True, fresh=fresh, look=False)
-    place = file if known else beside(file, ".vines")
+    place = file if computed else beside(file, ".vines")
     graph = load_file(place, trust)
     refuse_unfinished(graph, place)
     if within is not None:
         ends = interval("--within", within, over, graph.units)
     else:
-        assert said is not None
-        ends = said.within[0], said.within[1]
+        assert section is not None
+        ends = section.within[0], section.within[1]
     return graph, place, Plane(over, ends, virtual)
 
 
@@ -205,11 +205,11 @@ def _source(diagram: Path, target: Path, plane: Plane) -> dict[str, Any] | None:
     """Return the study stored in a diagram's file, with the settings of the chart; None if the file has no study."""
     from .study import source_of
 
-    kept = source_of(diagram)
-    if not kept:
+    stored = source_of(diagram)
+    if not stored:
         return None
-    place = os.path.relpath(diagram.absolute().parent / kept["study"], target.absolute().parent)
-    return {**kept, "study": place, "chart": [plane.over, *plane.within], "virtual": plane.virtual}
+    place = os.path.relpath(diagram.absolute().parent / stored["study"], target.absolute().parent)
+    return {**stored, "study": place, "chart": [plane.over, *plane.within], "virtual": plane.virtual}
 
 
 def circle(
@@ -230,9 +230,9 @@ def circle(
     """Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up."""
     graph = load_file(file, trust)
     if label not in graph.special:
-        known = ", ".join(point.label for point in graph.of_kind("neimark-sacker"))
+        points = ", ".join(point.label for point in graph.of_kind("neimark-sacker"))
         raise ValueError(
-            f"{file}: {label} is no label of it; its Neimark-Sacker points are {known or 'none'}."
+            f"{file}: {label} is no label of it; its Neimark-Sacker points are {points or 'none'}."
         )
     refuse_detached(graph, label)
     end = None if to is None else amount("--to", to, graph.parameter, graph.units)

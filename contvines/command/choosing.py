@@ -54,12 +54,14 @@ MODULATED = ("chaotic", "quasi-periodic", "slow")
 
 def loads(found: Findings) -> dict[str, float]:
     """Return the largest value of each load over the stable branches and the motions without a branch."""
-    known = {name: [float(met.measures.get(name, math.nan)) for met in found.unbranched] for name in LOADS}
+    values_of = {
+        name: [float(motion.measures.get(name, math.nan)) for motion in found.unbranched] for name in LOADS
+    }
     for part in stretches(found.graph):
         for name in LOADS:
             if name in part.branch.measure_names:
-                known[name] += list(part.branch.measure(name)[part.first : part.last + 1])
-    return {name: largest(values) for name, values in known.items()}
+                values_of[name] += list(part.branch.measure(name)[part.first : part.last + 1])
+    return {name: largest(values) for name, values in values_of.items()}
 
 
 def met(found: Findings) -> dict[str, float]:
@@ -157,7 +159,7 @@ class Machines:
         self.name, names = next(iter(axes), "half_width"), list(model.amount_names)
         if not axes:
             if study.sort is not Sort.PHYSICAL or self.name not in names:
-                raise ValueError(_what(study, names))
+                raise ValueError(_advice(study, names))
             model = model.given_by(self.name)
         self.model, self.family, self.units = model, machines_of(study, model), units_of(study, model)
         self.drawn = self.plan.samples
@@ -208,7 +210,7 @@ class Machines:
         from .survey import without_main
 
         self.surveys += 1
-        begun = monotonic()
+        began = monotonic()
         options = {**self.study.options, "depth": 0}  # simulation also finds the motions that leave a branch
         with without_main():
             found = survey(
@@ -216,7 +218,7 @@ class Machines:
                 journal=self.journal(self.surveys), units=self.units, about={"recommend": self.surveys, "ways": list(ways), **asked_of(self.study)},
                 progress=self.progress, gaps=self.study.survey.gaps, **ways, **options,
             )  # fmt: skip
-        self.pace = (monotonic() - begun) / len(plan)
+        self.pace = (monotonic() - began) / len(plan)
         return found
 
     # ------------------------------------------------------------------ told of the choice
@@ -248,7 +250,7 @@ class Machines:
         from ..survey.work import Job, work
 
         over, (low, high) = self.study.parameter, self.study.within
-        seen: list[Curve] = []
+        curves: list[Curve] = []
         compared: list[tuple[float, float]] = []
         measure = flow_of(model).default_measure(model)
         loose: dict[str, Any] = {k: v for k, v in own.items() if k != over}
@@ -259,7 +261,7 @@ class Machines:
 
         def keep(found: Findings) -> dict[str, float]:
             parts = stretches(found.graph)
-            seen.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
+            curves.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
             top, most = highest(parts), -math.inf
             if top is not None:  # from itself: other starts may miss a motion that few of them lead to
                 u, p, response = inside(top, 0.5 * AGREES)
@@ -278,7 +280,7 @@ class Machines:
         job = Job(self.family, over, (low, high), (keep,), options={**self.study.options, "depth": 0})
         columns = work(job, 0, {self.name: value}).columns
         if not columns:
-            return None, seen
+            return None, curves
         step, top = (high - low) / (CHECK - 1), columns["peak_at"]
         near = max(low, top - ABOUT * step), min(high, top + ABOUT * step)
         closer = np.linspace(*near, ROUGH if self.integrated else FINE)
@@ -286,12 +288,12 @@ class Machines:
         most = -math.inf
         for run in (grid, grid[::-1]):
             rows = sweep(model, over, run, nudge=0.0, **loose)
-            seen.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))
-            most = max(most, *seen[-1].y)
+            curves.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))
+            most = max(most, *curves[-1].y)
         largest = columns["peak"]  # of motions without a branch, too
         if not compared or compared[0][0] < (1.0 - AGREES) * largest or most > (1.0 + AGREES) * largest:
-            return (largest, most), seen
-        return compared[0], seen
+            return (largest, most), curves
+        return compared[0], curves
 
     def compared(self, model: Varying) -> list[Curve]:
         """Return the responses of the machines to compare with; declared machines have none."""
@@ -315,39 +317,39 @@ class Machines:
         params = model.vector_at(over, at, self.study.loose)
         scales = Scales(model, params)
         length, seconds = scales.factor("length"), scales.factor("time")
-        seen = start_up(model, params)
+        motion = start_up(model, params)
         self.assumed.append(
             f"start-up from rest at {over} = {figures(at)} {self.units.get(over, '')}".rstrip()
             + ", where the bare machine moves most"
         )
-        thin = slice(None, None, max(1, len(seen.times) // DRAWN))
+        thin = slice(None, None, max(1, len(motion.times) // DRAWN))
         series = {
-            "time": seen.times * seconds,
-            "oscillator": seen.oscillator * length,
-            "bare": seen.bare * length,
+            "time": motion.times * seconds,
+            "oscillator": motion.oscillator * length,
+            "bare": motion.bare * length,
         }
         return Start(
             peak=float(np.abs(series["oscillator"]).max()),
             bare_peak=float(np.abs(series["bare"]).max()),
-            settled=seen.settled * seconds,
-            bare_settled=seen.bare_settled * seconds,
-            fastest_impact=float(seen.impact_speeds.max(initial=0.0)) * scales.factor("velocity"),
-            worst_relative=float(np.abs(seen.relative).max()) * length,
+            settled=motion.settled * seconds,
+            bare_settled=motion.bare_settled * seconds,
+            fastest_impact=float(motion.impact_speeds.max(initial=0.0)) * scales.factor("velocity"),
+            worst_relative=float(np.abs(motion.relative).max()) * length,
             series={name: values[thin].tolist() for name, values in series.items()},
         )
 
 
-def _what(study: Study, names: Sequence[str]) -> str:
+def _advice(study: Study, names: Sequence[str]) -> str:
     """Return advice for a study without a parameter to choose: a range without ``count`` means that a value is uncertain."""
-    said = {
+    ranges = {
         name: value["within"]
         for name, value in study.survey.vary.items()
         if isinstance(value, dict) and "within" in value
     }
-    usual = next((name for name in names if any(word in name for word in CLEARANCES)), names[0])
-    name = next(iter(said), usual)
-    within = json.dumps(said[name]) if said else "[from, to]"
-    why = "[survey] vary needs one parameter with a range"
-    if said:
-        why = f"vary.{name} without count is uncertain"
-    return f"{study.path}: what is to be chosen? {why}; for example vary.{name} = {{ within = {within}, count = {PLACES} }}."
+    default = next((name for name in names if any(word in name for word in CLEARANCES)), names[0])
+    name = next(iter(ranges), default)
+    within = json.dumps(ranges[name]) if ranges else "[from, to]"
+    reason = "[survey] vary needs one parameter with a range"
+    if ranges:
+        reason = f"vary.{name} without count is uncertain"
+    return f"{study.path}: what is to be chosen? {reason}; for example vary.{name} = {{ within = {within}, count = {PLACES} }}."

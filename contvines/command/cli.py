@@ -194,8 +194,8 @@ def main(arguments: list[str] | None = None) -> None:
         if explain := getattr(error, "show", None):  # the line itself cannot be understood
             from .refusals import refusal
 
-            if about := refusal(error, words):
-                print(f"contvines: {about}", file=sys.stderr)
+            if message := refusal(error, words):
+                print(f"contvines: {message}", file=sys.stderr)
             else:
                 explain()
             sys.exit(getattr(error, "exit_code", 2))

@@ -55,9 +55,9 @@ def check_shaken(study: Study, vary: Iterable[str] = ()) -> None:
         return
     unshaken = study.model.unshaken(study.model.vector(study.loose))
     if unshaken is not None and not any(map(study.model.shakes, (study.parameter, *vary))):
-        zero, would = unshaken
+        zero, example = unshaken
         raise ValueError(
-            f"{study.path}: {zero}: nothing shakes the machine, whatever {study.parameter} is; for example {would}."
+            f"{study.path}: {zero}: nothing shakes the machine, whatever {study.parameter} is; for example {example}."
         )
 
 
@@ -174,11 +174,11 @@ def check_bounds(study: Study, command: str) -> None:
         raise ValueError(
             "[continue] bounds: an atlas follows all that it meets to its end; leave them out, or use contvines diagram."
         )
-    known = measures_of(study)
+    measures = measures_of(study)
     for name, (low, high) in study.bounds.items():
-        if name not in known:
+        if name not in measures:
             raise ValueError(
-                f"[continue] bounds: there is no measure {name!r}{did_you_mean(name, known)}; choose one of {', '.join(known)}."
+                f"[continue] bounds: there is no measure {name!r}{did_you_mean(name, measures)}; choose one of {', '.join(measures)}."
             )
         if not low < high:
             raise ValueError(
@@ -206,10 +206,10 @@ def check_axes(study: Study, axes: dict[str, str | None], plot: Path | None) -> 
     for option, name in axes.items():
         if name is None:
             continue
-        known = list(dict.fromkeys([study.parameter, *measures_of(study)]))
-        if name not in known:
+        measures = list(dict.fromkeys([study.parameter, *measures_of(study)]))
+        if name not in measures:
             raise ValueError(
-                f"{option} {name}: there is no such measure{way_out(name) or did_you_mean(name, known)}; choose one of {', '.join(known)}."
+                f"{option} {name}: there is no such measure{way_out(name) or did_you_mean(name, measures)}; choose one of {', '.join(measures)}."
             )
         if plot is None:
             raise ValueError(

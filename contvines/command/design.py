@@ -62,13 +62,13 @@ def machine(
             "or transient for the inclined one."
         )
     asked = (("cavity", cavity, "m", HALF_WIDTH), ("natural-frequency", natural_frequency, "Hz", 7.666))
-    for name, value, unit, usual in asked:
+    for name, value, unit, example in asked:
         if value is not None and physical:
             raise StudyError(f"--{name} = {value!r}: the study says it already; leave --{name} out.")
         if value is not None and not SCALE[0] <= value <= SCALE[1]:
             raise StudyError(
                 f"--{name} = {value!r} is out of range; expected a number from {SCALE[0]:g} to {SCALE[1]:g} {unit}, "
-                f"for example {usual}."
+                f"for example {example}."
             )
     numbers, assumed = model.named(params) if physical else study.parameters, {}
     fields: dict[str, Any] = {name: numbers[name] for name in ("restitution", "friction", "mass_ratio")}
@@ -200,16 +200,16 @@ def _bounds(axes: Axes, design: Design, over: Over, room: float) -> None:
 
     `room` is the space for a legend.
     """
-    across, line = over.values * over.unit, design.with_(**{over.name: over.values})
+    values_shown, line = over.values * over.unit, design.with_(**{over.name: over.values})
     limits = line.activation_threshold, line.upper_bound, line.sticking_limit()
-    low, high, stick = (MM * np.broadcast_to(limit, across.shape) for limit in limits)
-    axes.fill_between(across, low, high, color="#dbe6f1", lw=0, label="two symmetric impacts")
+    low, high, stick = (MM * np.broadcast_to(limit, values_shown.shape) for limit in limits)
+    axes.fill_between(values_shown, low, high, color="#dbe6f1", lw=0, label="two symmetric impacts")
     for values, color, style, label in (
         (low, BLUE, "-", r"activation threshold $q_{1,\min}$"),
         (high, BLUE, (0, (5, 2.2)), r"upper bound $q_{1,\max}$"),
         (stick, RED, (0, (1, 1.6)), r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$"),
     ):
-        axes.plot(across, values, color=color, ls=style, label=label)
+        axes.plot(values_shown, values, color=color, ls=style, label=label)
     axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05 * room * max(np.max(high), np.max(stick))))
     _mark_own(axes, over)
 
@@ -228,18 +228,18 @@ def _round_levels(low: float, high: float) -> Sequence[float]:
 
 
 def _map(
-    panel: Axes, mu: np.ndarray, b: np.ndarray, values: Reals, here: tuple[float, float], title: str
+    panel: Axes, mu: np.ndarray, b: np.ndarray, values: Reals, own: tuple[float, float], title: str
 ) -> None:
     """Draw the contours of a quantity over friction and half-width."""
     values = np.asarray(values)
-    known = values[np.isfinite(values)]  # elastic walls without friction have no threshold and no ratio
-    if known.size and known.max() > 1.001 * known.min():
-        levels = _round_levels(float(known.min()), float(known.max()))
-        shown = np.ma.masked_invalid(values)
-        panel.contourf(mu, MM * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
-        lines = panel.contour(mu, MM * b, shown, levels=levels, colors=BLUE, linewidths=0.9)
+    finite = values[np.isfinite(values)]  # elastic walls without friction have no threshold and no ratio
+    if finite.size and finite.max() > 1.001 * finite.min():
+        levels = _round_levels(float(finite.min()), float(finite.max()))
+        masked = np.ma.masked_invalid(values)
+        panel.contourf(mu, MM * b, masked, levels=levels, cmap="Greys", alpha=0.55, norm="log")
+        lines = panel.contour(mu, MM * b, masked, levels=levels, colors=BLUE, linewidths=0.9)
         panel.clabel(lines, fmt="%.3g", fontsize=7.5)
-    panel.plot(here[0], MM * here[1], "o", color=RED)
+    panel.plot(own[0], MM * own[1], "o", color=RED)
     panel.set(ylabel="half-width $b$ [mm]", title=title)
     panel.grid(False)
 
@@ -278,8 +278,10 @@ def design(
     asked = read_study(study)
     figures, assumed = machine(asked, cavity, natural_frequency)
     heads = ("quantity", "symbol", "value", "unit", "meaning")
-    title = "\n".join([f"Design figures of {study.name}", *(f"assumed: {said}" for said in assumed.values())])
-    shown = titled(title, Table(heads, rows(figures, assumed), ("meaning",), ("value",)))
-    tell(shown, as_json(figures, assumed) if json_ else None)
+    title = "\n".join(
+        [f"Design figures of {study.name}", *(f"assumed: {sentence}" for sentence in assumed.values())]
+    )
+    table = titled(title, Table(heads, rows(figures, assumed), ("meaning",), ("value",)))
+    tell(table, as_json(figures, assumed) if json_ else None)
     if not no_plot:
         draw_in(plot or Path(f"{study.stem}-design.png"), lambda: draw(figures, size, assumed))

@@ -36,11 +36,11 @@ def argument(metavar: str, help: str) -> Any:
 def given(context: typer.Context) -> dict[str, str]:
     """Return the options that were given with other values than their defaults, as written on the command line, and their values."""
     found = {}
-    for known in context.command.params:
-        value = context.params.get(str(known.name))
-        if isinstance(known, TyperOption) and value not in (known.default, (), []):
-            name = known.secondary_opts[0] if value is False else known.opts[-1]
-            values = [] if known.is_flag else value if isinstance(value, tuple | list) else [value]
+    for entry in context.command.params:
+        value = context.params.get(str(entry.name))
+        if isinstance(entry, TyperOption) and value not in (entry.default, (), []):
+            name = entry.secondary_opts[0] if value is False else entry.opts[-1]
+            values = [] if entry.is_flag else value if isinstance(value, tuple | list) else [value]
             found[name] = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in (name, *values))
     return found
 
@@ -227,6 +227,6 @@ def interval(option: str, ends: tuple[str, str], name: str, units: Mapping[str, 
     """
     low, high = (amount(option, text, name, units) for text in ends)
     if not low < high:
-        shown = " ".join(repr(text) if " " in text else text for text in ends)
-        raise ValueError(f"{option} {shown}: give the lower value first, then the higher one.")
+        given_ends = " ".join(repr(text) if " " in text else text for text in ends)
+        raise ValueError(f"{option} {given_ends}: give the lower value first, then the higher one.")
     return low, high

@@ -53,9 +53,9 @@ def orbit(
         check_animation(animate)
 
     found = _orbit(file, label, trust)
-    about = _plain(found)
-    text = str(found) if "equilibrium" in about else _describe(about)
-    tell(fitted(text), about if json else None)
+    data = _plain(found)
+    text = str(found) if "equilibrium" in data else _describe(data)
+    tell(fitted(text), data if json else None)
     draw(plot, lambda: plot_portrait(found))
     if animate is not None:
         animated = getattr(found, "animate", None)
@@ -82,12 +82,12 @@ def _orbit(file: Path, label: str | None, trust: bool) -> object:
         )
         raise ValueError(f"which orbit of {file}? Give one of the labels {', '.join(labels)}.")
     name = label.partition(":")[0]
-    thing, place = point_of(graph, label)
-    if place is not None or hasattr(thing, "__len__"):
-        return thing.orbit(place or 0)
-    if isinstance(thing, SpecialPoint) and isinstance(graph, Graph) and thing.problem is None:
-        raise ValueError(without_problem(name, graph.branches[thing.branch].description))
-    return thing.orbit
+    found, place = point_of(graph, label)
+    if place is not None or hasattr(found, "__len__"):
+        return found.orbit(place or 0)
+    if isinstance(found, SpecialPoint) and isinstance(graph, Graph) and found.problem is None:
+        raise ValueError(without_problem(name, graph.branches[found.branch].description))
+    return found.orbit
 
 
 def _first_orbit(file: Path, label: str | None) -> tuple[Any, tuple[float, float]]:
@@ -122,27 +122,27 @@ def _plain(found: Any) -> dict[str, Any]:
     return {n: getattr(found, n) for n in ("parameter", "value", "u", "points") if hasattr(found, n)}
 
 
-def _describe(about: dict[str, Any]) -> str:
+def _describe(data: dict[str, Any]) -> str:
     """Describe an orbit as text, from the data that --json prints."""
     from ..graph.table import short_word, with_unit
     from ..shared.motions import marginal_text
     from ..text_table import Table, terminal_width
 
-    lines, units, margins = [], about.get("units", {}), about.get("margins")
-    pairs = about.get("multipliers", [])
+    lines, units, margins = [], data.get("units", {}), data.get("margins")
+    pairs = data.get("multipliers", [])
     multipliers = [complex(*pair) for pair in pairs]
-    stable = about.get("stable")
+    stable = data.get("stable")
     stability = marginal_text(multipliers) if stable is None and pairs else "stable" if stable else "unstable"
-    if "word" in about:
-        nature = "real" if about["real"] else "virtual: no machine follows it"
-        word = short_word(about["word"]) or about.get("rest", "stuck")
-        lines.append(f"{word}  k = {about['periods']}  ({nature})")
-    if "states" in about:  # a cycle of a flow
-        lines.append(f"cycle of period {figures(about['period'])}  ({stability})")
-    if parameters := about.get("parameters"):
-        told = (f"{k} = {v:.7g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
-        lines.append(f"  {'  '.join(told)}")
-    if nodes := about.get("nodes"):
+    if "word" in data:
+        nature = "real" if data["real"] else "virtual: no machine follows it"
+        word = short_word(data["word"]) or data.get("rest", "stuck")
+        lines.append(f"{word}  k = {data['periods']}  ({nature})")
+    if "states" in data:  # a cycle of a flow
+        lines.append(f"cycle of period {figures(data['period'])}  ({stability})")
+    if parameters := data.get("parameters"):
+        parameter_texts = (f"{k} = {v:.7g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+        lines.append(f"  {'  '.join(parameter_texts)}")
+    if nodes := data.get("nodes"):
         head = tuple(
             with_unit(name, None if name == "phase" else units.get(name) or units.get(EVENTS.get(name, "")))
             for name in nodes[0]
@@ -152,11 +152,11 @@ def _describe(about: dict[str, Any]) -> str:
         ]
         width = terminal_width()
         lines += [f"  {line}" for line in Table(head, rows, right=head).lines(width and width - 2)]
-    if "multipliers" in about:
+    if "multipliers" in data:
         text = complex_figures(multipliers)
         if any(math.isnan(part) for pair in pairs for part in pair):
             text = "not defined at a graze"
-        elif text and "word" in about:
+        elif text and "word" in data:
             text = f"{text}  ({stability})"
         lines.append(f"  multipliers: {text or 'none'}")
     if margins:
@@ -165,7 +165,7 @@ def _describe(about: dict[str, Any]) -> str:
             f"  smallest margin: {figures(smallest['value'])} ({smallest['kind']}, segment {smallest['segment']}) "
             f"of {len(margins)}"
         )
-    return "\n".join(lines or [f"{k}: {v}" for k, v in about.items()])
+    return "\n".join(lines or [f"{k}: {v}" for k, v in data.items()])
 
 
 def prove(
@@ -217,15 +217,15 @@ def prove(
         with held(file, quiet=False):
             proofs = _of_file(file, names, bits, trust, within)
     if json:
-        about = {label: {"label": label, **proof.to_dict()} for label, proof in proofs.items()}
-        alone = len(names) == 1 or file.suffix == ".toml"
-        typer.echo(json_.dumps(next(iter(about.values())) if alone else about, indent=1))
+        entries = {label: {"label": label, **proof.to_dict()} for label, proof in proofs.items()}
+        single = len(names) == 1 or file.suffix == ".toml"
+        typer.echo(json_.dumps(next(iter(entries.values())) if single else entries, indent=1))
     else:
         for label, proof in proofs.items():
             typer.echo(fitted(f"{label}: {proof}"))
     if output is not None:
-        made = {label: proof.certificate() for label, proof in proofs.items() if proof.existence}
-        output.write_text(json_.dumps(made, indent=1) + "\n", encoding="utf-8")
+        certificates = {label: proof.certificate() for label, proof in proofs.items() if proof.existence}
+        output.write_text(json_.dumps(certificates, indent=1) + "\n", encoding="utf-8")
 
 
 def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]:
@@ -272,8 +272,8 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
     from ..store import printable
 
     if is_database(file):
-        kept = load_file(file, problems=False).proofs
-        found = {label: proof["certificate"] for label, proof in kept.items()}
+        proofs = load_file(file, problems=False).proofs
+        found = {label: proof["certificate"] for label, proof in proofs.items()}
     else:
         try:
             found = json_.loads(file.read_text(encoding="utf-8"))
@@ -316,8 +316,8 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
         typer.echo(json_.dumps(verdicts, indent=1))
     else:
         for label, verdict in verdicts.items():
-            said = "verified" if verdict["verified"] else f"NOT verified: {verdict['why']}"
-            typer.echo(fitted(f"{label}: {said}"))
+            result = "verified" if verdict["verified"] else f"NOT verified: {verdict['why']}"
+            typer.echo(fitted(f"{label}: {result}"))
     if any(verdict["verified"] is False for verdict in verdicts.values()):
         raise typer.Exit(1)
 

@@ -193,18 +193,18 @@ def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None,
 
     from ..graph.stretches import default_measure
 
-    shown, over = y or default_measure(graph), x or graph.parameter
+    measure, over = y or default_measure(graph), x or graph.parameter
     problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)
     if (
         not isinstance(problem, OrbitProblem)
         or not isinstance(problem.model, Model)
         or "damping" not in problem.model.parameter_names
-        or shown not in SHOWN
+        or measure not in SHOWN
         or over != graph.parameter
     ):
         raise ValueError(
             f"--compare {kinds[0]}: this goes with the displacement of an oscillator ({' or '.join(SHOWN)}) over the parameter; "
-            f"here {shown} is drawn over {over}."
+            f"here {measure} is drawn over {over}."
         )
     values = np.linspace(*graph.within, POINTS)
     params = np.atleast_2d(problem.values(values))
@@ -254,8 +254,8 @@ def peaks_compared(
 def compared_text(model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
     """Describe the largest responses of the machines for comparison in one sentence."""
     unit, place = model.units.get(SHOWN[0], ""), model.units.get(over, "")
-    said = [
+    parts = [
         f"{NAMES[kind]} {figures(peak)} {unit} at {over} = {figures(at)} {place}".replace("  ", " ").rstrip()
         for kind, (peak, at) in peaks_compared(model, over, within, kinds).items()
     ]
-    return f"to compare with, at most: {'; '.join(said)}"
+    return f"to compare with, at most: {'; '.join(parts)}"

@@ -89,14 +89,14 @@ def recommended(
 
     own = digest(read, cost, target)
     if place.exists():
-        known = kept(place)
-        if known.get("digest") != own:
+        stored = kept(place)
+        if stored.get("digest") != own:
             raise ValueError(
                 f"{place}: this file holds another recommendation (or this one before the study was edited); --fresh sets it aside, "
                 "-o gives another name."
             )
         say(f"{place} holds the finished recommendation; nothing to compute.", quiet)
-        return Recommendation.from_dict(known["recommendation"])
+        return Recommendation.from_dict(stored["recommendation"])
     journals: list[Path] = []
 
     def journal(count: int) -> Path:
@@ -151,8 +151,8 @@ def choice_picture(found: Recommendation, size: tuple[float, float] | None = Non
     with styled():
         figure = new_figure(figsize=size or SIZE)
         count = 2 if found.curves else 1
-        across = 1 if figure.get_figwidth() < NARROW else count
-        panels = figure.subplots(count // across, across, squeeze=False).ravel()
+        columns = 1 if figure.get_figwidth() < NARROW else count
+        panels = figure.subplots(count // columns, columns, squeeze=False).ravel()
         draw_places(panels[0], found)
         if found.curves:
             draw_responses(panels[1], found)
@@ -171,16 +171,16 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
     from .plot import LOOKS
 
     first = [p for p in found.places if p.samples < found.most or found.most == 1]
-    later = [p for p in found.places if p.samples == found.most > 1]
+    complete = [p for p in found.places if p.samples == found.most > 1]
     for places, mark, label in (
         (first, "o", "the study's machine"),
-        ([p for p in later if not p.left], "D", f"worst of {found.most} samples"),
-        ([p for p in later if p.left], "^", "at least: one sample"),
+        ([p for p in complete if not p.left], "D", f"worst of {found.most} samples"),
+        ([p for p in complete if p.left], "^", "at least: one sample"),
     ):
-        known = [(p.value, p.worst) for p in places if math.isfinite(p.worst)]
-        if known:
+        finite = [(p.value, p.worst) for p in places if math.isfinite(p.worst)]
+        if finite:
             axes.plot(
-                *zip(*known),
+                *zip(*finite),
                 mark,
                 color=BLUE,
                 markersize=4,
@@ -225,10 +225,10 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
         ("simulated", {"marker": ".", "ls": "", "ms": 2.5, "color": "0.35"}),
         ("stable", {"color": BLUE, "lw": 1.8}),
     ):
-        said = {"simulated": "simulation up and down", "stable": "recommended: stable motions"}[name]
+        label = {"simulated": "simulation up and down", "stable": "recommended: stable motions"}[name]
         for curve in (c for c in found.curves if c.name == name):
-            axes.plot(curve.x, curve.y, label=said, **style)
-            said = "_"
+            axes.plot(curve.x, curve.y, label=label, **style)
+            label = "_"
     axes.set(
         xlabel=_label(found, found.parameter, found.parameter.replace("_", " ")),
         ylabel=_label(found, "peak", "largest displacement"),

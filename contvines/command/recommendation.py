@@ -254,18 +254,18 @@ class Recommendation:
         if self.value is None:
             return f"No {self._named} can be recommended: {self.unknown[0] if self.unknown else 'nothing is known'}."
         low, high = self.tolerance
-        said = f"Recommended: {self._named} {self.shown(self.name, self.value)}"
+        text = f"Recommended: {self._named} {self.shown(self.name, self.value)}"
         if self.at_end:
-            said += ", at the end of the range that was looked at: a better one may lie beyond"
+            text += ", at the end of the range that was looked at: a better one may lie beyond"
         if low < high:
-            said += f"; from {low:.3g} to {self.shown(self.name, float(f'{high:.3g}'))} it costs less than {100 * self.cost:g} %"
-        return said + "."
+            text += f"; from {low:.3g} to {self.shown(self.name, float(f'{high:.3g}'))} it costs less than {100 * self.cost:g} %"
+        return text + "."
 
     @property
     def sentences(self) -> list[str]:
         """Return the sentences beside the tables, the most important first."""
         peak, place, own = "peak", self.chosen, self._own()
-        found = [*self._beside(), *([own] if own else [])]
+        found = [*self._near_jumps(), *([own] if own else [])]
         if place is not None and self.simulated > place.worst:
             found.insert(
                 0, f"Simulation meets {self.shown(peak, self.simulated)} there, more than the diagrams know ({self.shown(peak, place.worst)}): the largest response is not known."
@@ -278,10 +278,10 @@ class Recommendation:
             )
         if place is not None and "tuned" in self.compared:
             tuned = self.compared["tuned"][0]
-            does, stays = (
+            verb, stays = (
                 ("do better", " while it stays in tune") if tuned < place.worst else ("not do better", "")
             )
-            found.append(f"A tuned absorber of the same mass would {does}: {self.shown(peak, tuned)}{stays}.")
+            found.append(f"A tuned absorber of the same mass would {verb}: {self.shown(peak, tuned)}{stays}.")
         tops = {kind: self.met.get(f"{kind}_peak", -math.inf) for kind in MET}
         kind = max(tops, key=lambda kind: tops[kind])
         if tops["impacts"] > -math.inf and tops[kind] > tops["impacts"]:
@@ -299,15 +299,15 @@ class Recommendation:
             )
         return found
 
-    def _beside(self) -> list[str]:
+    def _near_jumps(self) -> list[str]:
         """Return sentences about the distance of the choice from jumps, and about a lower response nearer to a jump."""
         place, found = self.chosen, []
         if place is None:
             return []
         for jump in self.jumps:
-            by, way = abs(jump.at - place.value), "lower" if jump.at < place.value else "higher"
-            there = f"{self.shown('peak', jump.response)} at {self.shown(self.name, jump.beyond)}"
-            found.append(f"{self.shown(self.name, by)} {way} it jumps: {there}.")
+            distance, side = abs(jump.at - place.value), "lower" if jump.at < place.value else "higher"
+            response = f"{self.shown('peak', jump.response)} at {self.shown(self.name, jump.beyond)}"
+            found.append(f"{self.shown(self.name, distance)} {side} it jumps: {response}.")
         lowest = min(
             (p for p in self.places if p.samples == place.samples and not p.left and math.isfinite(p.worst)),
             key=lambda p: p.worst,
@@ -322,8 +322,8 @@ class Recommendation:
     @property
     def engaged(self) -> Place | None:
         """The entry of `places` with the lowest response if the lowest coexisting response always occurs."""
-        known = [place for place in self.places if math.isfinite(place.engaged)]
-        return min(known, key=lambda place: place.engaged, default=None)
+        finite = [place for place in self.places if math.isfinite(place.engaged)]
+        return min(finite, key=lambda place: place.engaged, default=None)
 
     def _own(self) -> str:
         """Compare the study's own value with the choice in a sentence."""
@@ -338,11 +338,11 @@ class Recommendation:
         ratio = self.value / self.own
         factor = max(ratio, 1.0 / ratio)
         share = f"{100.0 * abs(self.own / self.value - 1.0):.2g} %"
-        by = f"about {round(factor)} times" if factor >= 1.5 else share
+        ratio_text = f"about {round(factor)} times" if factor >= 1.5 else share
         worst = ""
         if place is not None and math.isfinite(place.worst):
             worst = f": {self.shown('peak', place.worst)} at worst"
-        return f"The study's {self.shown(self.name, self.own)} is {by} too {'small' if ratio > 1.0 else 'large'}{worst}."
+        return f"The study's {self.shown(self.name, self.own)} is {ratio_text} too {'small' if ratio > 1.0 else 'large'}{worst}."
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
@@ -352,12 +352,14 @@ class Recommendation:
         place, found = self.chosen, []
         if place is not None:
             over = f"worst of {place.samples} samples" if place.samples > 1 else "worst of all that coexists"
-            met = self.simulated > place.worst
-            if met:
+            exceeded = self.simulated > place.worst
+            if exceeded:
                 found.append(
                     ("recommended", f"at least {self.shown('peak', self.simulated)}", "by simulation")
                 )
-            found.append(("by diagrams" if met else "recommended", self.shown("peak", place.worst), over))
+            found.append(
+                ("by diagrams" if exceeded else "recommended", self.shown("peak", place.worst), over)
+            )
             if place.samples > 1:
                 found.append(("recommended, median", self.shown("peak", place.median), ""))
             name = "absorber at work" if self.absorber else "lowest motion"
@@ -370,29 +372,29 @@ class Recommendation:
     @property
     def behaviour(self) -> list[tuple[str, str, str]]:
         """Return the rows about the share of samples in which the machine is quieted, and the kinds of motions."""
-        said = "not known" if math.isnan(self.works) else f"{100 * self.works:.3g} %"
+        share_text = "not known" if math.isnan(self.works) else f"{100 * self.works:.3g} %"
         found = []
         if not math.isnan(self.target):
             most = self.shown("peak", self.target)
-            found.append(("works", said, f"of the samples: at most {most} whatever coexists"))
+            found.append(("works", share_text, f"of the samples: at most {most} whatever coexists"))
         for kind, name in self._kinds.items():
             share, top = self.met.get(kind, math.nan), self.met.get(f"{kind}_peak", math.nan)
             if math.isnan(share):
                 continue
-            told = "of simulated starts" if share > 0.0 or math.isfinite(top) else "not met"
-            told += f"; at most {self.shown('peak', top)}" if math.isfinite(top) else ""
+            remark = "of simulated starts" if share > 0.0 or math.isfinite(top) else "not met"
+            remark += f"; at most {self.shown('peak', top)}" if math.isfinite(top) else ""
             if kind == "modulated" and BAND[1] in self.met:
                 low, mean, high = (self.shown("peak", self.met[end]) for end in BAND)
-                told += f", per period {low} to {high} (mean {mean}); {100 * self.met['modulated_strong']:.3g} % of them strongly"
-            found.append((f"  {name}", f"{100 * share:.3g} %", told))
+                remark += f", per period {low} to {high} (mean {mean}); {100 * self.met['modulated_strong']:.3g} % of them strongly"
+            found.append((f"  {name}", f"{100 * share:.3g} %", remark))
         return found
 
     @property
     def load_rows(self) -> list[tuple[str, str, str]]:
         """Return the rows about loads and noise."""
         return [
-            (said, self.shown(name, self.loads[name]), why)
-            for name, (said, why) in LOADS.items()
+            (name_text, self.shown(name, self.loads[name]), remark)
+            for name, (name_text, remark) in LOADS.items()
             if name in self.loads
         ]
 
@@ -423,8 +425,8 @@ class Recommendation:
     @property
     def start_up_at(self) -> str:
         """The excitation of the start-up, in words."""
-        said = next((text for text in self.assumed if text.startswith("start-up")), "")
-        return said.partition(" from rest ")[2]
+        sentence = next((text for text in self.assumed if text.startswith("start-up")), "")
+        return sentence.partition(" from rest ")[2]
 
     @property
     def tables(self) -> list[tuple[str, list[tuple[str, str, str]]]]:
@@ -446,11 +448,9 @@ class Recommendation:
         for title, rows in self.tables:
             lines += ["", title, *Table(("", "value", ""), [*rows], (), ()).lines(width)[1:]]
         if self.checked is not None:
-            by, simulated = (self.shown("peak", value) for value in self.checked)
-            checked = (
-                f"Checked by simulation at the largest response: {simulated}, beside {by} of the diagram."
-            )
+            diagram, simulated = (self.shown("peak", value) for value in self.checked)
+            checked = f"Checked by simulation at the largest response: {simulated}, beside {diagram} of the diagram."
             lines += ["", fitted(checked)]
-        for head, said in (("assumed", self.assumed), ("not known", self.first_unknown)):
-            lines += [fitted(f"{head}: {sentence}") for sentence in said]
+        for head, sentences in (("assumed", self.assumed), ("not known", self.first_unknown)):
+            lines += [fitted(f"{head}: {sentence}") for sentence in sentences]
         return "\n".join(lines)

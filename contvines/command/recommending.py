@@ -107,7 +107,7 @@ class _Work(Machines):
         super().__post_init__()
         self.missed: list[str] = []  # sentences about larger responses that simulations have missed
         self.round = 0
-        self.rows: dict[float, _Looked] = {}  # responses of all samples, by value
+        self.rows: dict[float, _Responses] = {}  # responses of all samples, by value
         self.places: dict[float, Place] = {}  # by value, ascending
 
     def best(self) -> Place | None:
@@ -123,8 +123,8 @@ class _Work(Machines):
 
         values = self.range()
         self._tell_round(len(values))
-        found = self._looked(Plan({self.name: np.array(values)}, {}))
-        rows = dict(zip(values, (_Looked(*row) for row in zip(*(c.reshape(-1, 1) for c in found)))))
+        found = self._computed(Plan({self.name: np.array(values)}, {}))
+        rows = dict(zip(values, (_Responses(*row) for row in zip(*(c.reshape(-1, 1) for c in found)))))
         if not self.drawn:
             self.rows |= rows
         self.note(_place(value, row, 1) for value, row in rows.items())
@@ -144,21 +144,21 @@ class _Work(Machines):
         At the value nearest to `near` all samples are computed. At the others, the sample that is worst at the best value comes first; if
         its response is too large, the other samples are left out, as the worst of all samples cannot be lower.
         """
-        known = self.rows
-        new = sorted((v for v in values if v not in known), key=lambda v: (abs(v - near), v))
+        rows = self.rows
+        new = sorted((v for v in values if v not in rows), key=lambda v: (abs(v - near), v))
         every = np.arange(self.samples)
-        full = [v for v in known if not np.isnan(known[v].known).any()]
+        full = [v for v in rows if not np.isnan(rows[v].known).any()]
         self._tell_round(len(new) * self.samples, "at most " if self.samples > 1 else "")
         if not full and new:
-            self._look(new[:1], every)
-            full = [v for v in new[:1] if np.isfinite(known[v].known).all()]
-        new = [v for v in new if v not in known]
-        best = min(full, key=lambda v: known[v].known.max(), default=None)
-        worst = every[:1] if best is None else every[[int(np.argmax(known[best].known))]]
-        limit = math.inf if best is None else (1.0 + self.cost) * float(known[best].known.max())
-        self._look(new, worst)
-        self._look([v for v in new if known[v].known[worst[0]] <= limit], np.setdiff1d(every, worst))
-        self.note(_place(value, row, self.samples) for value, row in known.items())
+            self._add_diagrams(new[:1], every)
+            full = [v for v in new[:1] if np.isfinite(rows[v].known).all()]
+        new = [v for v in new if v not in rows]
+        best = min(full, key=lambda v: rows[v].known.max(), default=None)
+        worst = every[:1] if best is None else every[[int(np.argmax(rows[best].known))]]
+        limit = math.inf if best is None else (1.0 + self.cost) * float(rows[best].known.max())
+        self._add_diagrams(new, worst)
+        self._add_diagrams([v for v in new if rows[v].known[worst[0]] <= limit], np.setdiff1d(every, worst))
+        self.note(_place(value, row, self.samples) for value, row in rows.items())
 
     def passed_over(self, best: Place) -> Place:
         """Return the best place after computing all samples at promising values that the rounds have passed over.
@@ -167,40 +167,42 @@ class _Work(Machines):
         the order of the response; if one is better, the values between its neighbours are computed, too.
         """
         while True:
-            alone = _best(place for place in self.places.values() if place.value not in self.rows)
-            if alone is None or alone.worst >= (1.0 - self.cost) * best.worst:
+            other = _best(place for place in self.places.values() if place.value not in self.rows)
+            if other is None or other.worst >= (1.0 - self.cost) * best.worst:
                 return best
-            self.later_look([alone.value], alone.value)
+            self.later_look([other.value], other.value)
             found = self.best()
             if found is not None and found.worst < best.worst:
                 best = self.between_neighbours(found, LATER[-1]) or found
 
-    def _look(self, values: Sequence[float], samples: np.ndarray) -> None:
+    def _add_diagrams(self, values: Sequence[float], samples: np.ndarray) -> None:
         """Compute diagrams of some samples (by index) at some values, and add them to `rows`."""
 
         if not len(values) or not len(samples):
             return
         drawn = {name: column[samples] for name, column in self.drawn.items()}
-        found = self._looked(Plan({self.name: np.array(values)}, drawn))
+        found = self._computed(Plan({self.name: np.array(values)}, drawn))
         for i, value in enumerate(values):
             nothing = (
                 np.full(self.samples, np.nan),
                 np.full(self.samples, np.nan),
                 np.full(self.samples, UNSEEN, object),
             )
-            row = self.rows.setdefault(value, _Looked(*nothing))
+            row = self.rows.setdefault(value, _Responses(*nothing))
             for own, column in zip(row, found):
                 own[samples] = column[i]
 
-    def _looked(self, plan: Plan) -> _Looked:
+    def _computed(self, plan: Plan) -> _Responses:
         """Compute the responses of a plan, by diagrams, or by simulation if flights are integrated."""
-        return _looked(self.surveyed(plan, ("peak", "lower_peak"), swept=SWEPT if self.integrated else 0))
+        return _responses_of(
+            self.surveyed(plan, ("peak", "lower_peak"), swept=SWEPT if self.integrated else 0)
+        )
 
     def _tell_round(self, machines: int, at_most: str = "") -> None:
         self.round += 1
         rest = "" if self.pace is None else f", about {_duration(self.pace * machines)}"
-        said = f"{machines} {'machine' if machines == 1 else 'machines'}"
-        self.tell(f"round {self.round} of {max(self.round, len(LATER) + 2)}: {at_most}{said}{rest}")
+        text = f"{machines} {'machine' if machines == 1 else 'machines'}"
+        self.tell(f"round {self.round} of {max(self.round, len(LATER) + 2)}: {at_most}{text}{rest}")
 
     # ------------------------------------------------------------------ at the choice
     def away_from_jumps(self, best: Place) -> tuple[Place, list[Jump]]:
@@ -221,7 +223,7 @@ class _Work(Machines):
         wanted = _tidy(min(max(wanted, low), high))
         if wanted == best.value:
             return best, jumps
-        self._look([wanted], np.arange(self.samples))
+        self._add_diagrams([wanted], np.arange(self.samples))
         other = _place(wanted, self.rows[wanted], self.samples)
         self.note([other])
         return other if other.worst <= (1.0 + self.cost) * best.worst else best, jumps
@@ -240,10 +242,10 @@ class _Work(Machines):
 
     def _jump(self, best: Place, side: int) -> Jump | None:
         """Return the jump next to the tolerance below (-1) or above (1) the best, or an equally large rise near it; None if there is neither."""
-        known = [p for p in self.places.values() if p.samples == best.samples and math.isfinite(p.worst)]
+        complete = [p for p in self.places.values() if p.samples == best.samples and math.isfinite(p.worst)]
         good = self.places[self.tolerance(best)[side > 0]]
-        end = known.index(good) + side
-        if not 0 <= end < len(known) or (bad := known[end]).worst < (1.0 + JUMP) * best.worst:
+        end = complete.index(good) + side
+        if not 0 <= end < len(complete) or (bad := complete[end]).worst < (1.0 + JUMP) * best.worst:
             return None
         sample = [int(np.nanargmax(self.rows[bad.value].known))]
         inner, outer = (float(self.rows[v].known[sample[0]]) for v in (good.value, bad.value))
@@ -252,7 +254,7 @@ class _Work(Machines):
             middle = _tidy(0.5 * (near + far))
             if middle in (near, far):
                 break
-            self._look([middle], np.array(sample))
+            self._add_diagrams([middle], np.array(sample))
             response = float(self.rows[middle].known[sample[0]])
             if not math.isfinite(response):
                 return None
@@ -273,18 +275,18 @@ class _Work(Machines):
         likewise.
         """
 
-        seen: dict[float, Survey] = {}
+        surveys: dict[float, Survey] = {}
         choice: Place | None = best
         starts = FEW if self.integrated else STARTS
-        while choice is not None and choice.value not in seen and len(seen) < TRIED:
+        while choice is not None and choice.value not in surveys and len(surveys) < TRIED:
             plan = Plan({self.name: np.array([choice.value])}, self.drawn)
             self.pace = self.pace if not self.integrated else None
             self._tell_round(len(plan))
             asked = ("peak", "lower_peak", "modulated", loads, met)
-            rows = seen[choice.value] = self.surveyed(plan, asked, values=VALUES, starts=starts)
+            rows = surveys[choice.value] = self.surveyed(plan, asked, values=VALUES, starts=starts)
             if not self.integrated:
                 break
-            row = self.rows[choice.value] = _Looked(*(column.ravel() for column in _looked(rows)))
+            row = self.rows[choice.value] = _Responses(*(column.ravel() for column in _responses_of(rows)))
             exact = _place(choice.value, row, self.samples)
             self.note([exact])
             if exact.worst <= (1.0 + AGREES) * choice.worst:
@@ -298,9 +300,9 @@ class _Work(Machines):
             choice = self.best()
             if choice is not None:
                 choice = self.passed_over(choice)
-        if choice is not None and choice.value not in seen:
-            choice = _best(place for place in self.places.values() if place.value in seen)
-        return choice, None if choice is None else seen[choice.value]
+        if choice is not None and choice.value not in surveys:
+            choice = _best(place for place in self.places.values() if place.value in surveys)
+        return choice, None if choice is None else surveys[choice.value]
 
     def recommendation(
         self, best: Place | None, rows: Survey | None, jumps: list[Jump], target: float | None
@@ -345,8 +347,8 @@ class _Work(Machines):
             for name in (*(f"{kind}_peak" for kind in MET), *BAND, "modulated_strong")
         }
         shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
-        has = flow_of(self.model).measure_names(self.model)
-        most = {name: largest(rows[name]) for name in LOADS if name in has}
+        names = flow_of(self.model).measure_names(self.model)
+        most = {name: largest(rows[name]) for name in LOADS if name in names}
         if not most:
             unknown.append("loads: a declared machine has them for walls, with energy=")
         unknown += [
@@ -364,7 +366,7 @@ class _Work(Machines):
         )  # fmt: skip
 
 
-class _Looked(NamedTuple):
+class _Responses(NamedTuple):
     """Responses of machines, as arrays.
 
     Fields: the largest response; the largest one if the lowest coexisting response always occurs (both nan if unknown); notes with the
@@ -376,23 +378,27 @@ class _Looked(NamedTuple):
     notes: np.ndarray
 
 
-def _looked(found: Survey) -> _Looked:
-    return _Looked(found.known("peak"), found.known("lower_peak"), found.notes)
+def _responses_of(found: Survey) -> _Responses:
+    return _Responses(found.known("peak"), found.known("lower_peak"), found.notes)
 
 
-def _place(value: float, row: _Looked, samples: int) -> Place:
-    seen = row.notes != UNSEEN
-    known, all_ = row.known[seen], bool(seen.all())
-    unknown = int(np.count_nonzero(~np.isfinite(known)))
-    why = next((str(note) for note, peak in zip(row.notes[seen], known) if not math.isfinite(peak)), "")
-    median = float(np.nanmedian(known)) if all_ and unknown < samples else math.nan
-    return Place(value, float(known.max()), median, float(row.engaged.max()), unknown, samples, why, not all_)
+def _place(value: float, row: _Responses, samples: int) -> Place:
+    computed = row.notes != UNSEEN
+    finite, all_ = row.known[computed], bool(computed.all())
+    unknown = int(np.count_nonzero(~np.isfinite(finite)))
+    reason = next(
+        (str(note) for note, peak in zip(row.notes[computed], finite) if not math.isfinite(peak)), ""
+    )
+    median = float(np.nanmedian(finite)) if all_ and unknown < samples else math.nan
+    return Place(
+        value, float(finite.max()), median, float(row.engaged.max()), unknown, samples, reason, not all_
+    )
 
 
 def _best(places: Iterable[Place]) -> Place | None:
     """Return the place with the lowest worst response; None if none is known."""
-    known = (place for place in places if math.isfinite(place.worst))
-    return min(known, key=lambda place: place.worst, default=None)
+    finite = (place for place in places if math.isfinite(place.worst))
+    return min(finite, key=lambda place: place.worst, default=None)
 
 
 def _duration(seconds: float) -> str:

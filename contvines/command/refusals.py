@@ -43,9 +43,9 @@ def refusal(error: Any, words: list[str]) -> str:
         return f"{option}: this option takes no value; write {option} alone."
     if message.startswith("No such command"):
         name = message.split("'")[1]
-        known = list(commands or ())
-        near = difflib.get_close_matches(name, known, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(known)}."
+        names = list(commands or ())
+        near = difflib.get_close_matches(name, names, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(names)}."
         return f"{name}: there is no such command; {hint}"
     if extra := re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message):
         writes = context and any(parameter.name == "output" for parameter in context.command.params)
@@ -59,7 +59,7 @@ def refusal(error: Any, words: list[str]) -> str:
 def _bad_value(error: Any, message: str, words: list[str]) -> str:
     """Describe an invalid value of an option or argument."""
     names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
-    said, no_choice, quoted = message.rpartition(" is not one of ")
+    sentence, no_choice, quoted = message.rpartition(" is not one of ")
     if names and names[-1].startswith("-"):
         typed = next((n for n in names if any(w == n or w.startswith(f"{n}=") for w in words)), names[-1])
         typed = typed if typed.startswith("--") else names[-1]
@@ -67,7 +67,7 @@ def _bad_value(error: Any, message: str, words: list[str]) -> str:
         given += [value for name, value in pairwise(words) if name in names]
         place = " ".join([typed, *given[:1]])
     else:
-        given = re.findall(r"'([^']*)'$", said)
+        given = re.findall(r"'([^']*)'$", sentence)
         place = "".join(given)
     if no_choice and place:
         choices = re.findall(r"'([^']*)'", quoted)

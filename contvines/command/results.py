@@ -27,14 +27,14 @@ def show(file: FileArgument, json: JsonOption = False) -> None:
 
     graph = load(file, problems=False)
     with Store.open(file) as store:
-        made = store.made
+        provenance = store.made
     if json:
-        tell(graph, {**graph.to_dict(), "made": made})
+        tell(graph, {**graph.to_dict(), "made": provenance})
         return
     say_state(graph, file, problems=False)
     typer.echo(str(graph))
-    if made:
-        typer.echo(as_text(made))
+    if provenance:
+        typer.echo(as_text(provenance))
     if "page" in graph.model:
         from orbits.machines.page.loading import page_changed
 
@@ -208,8 +208,8 @@ def _answer(file: Path) -> Answer:
     machine = [(name.replace("_", " "), text) for name, text in found.machine.items()]
     checked = []
     if found.checked is not None:
-        by, simulated = (found.shown("peak", value) for value in found.checked)
-        checked = [f"Checked by simulation: {simulated} beside {by} of the diagram."]
+        diagram, simulated = (found.shown("peak", value) for value in found.checked)
+        checked = [f"Checked by simulation: {simulated} beside {diagram} of the diagram."]
     lists = [("Assumed", found.assumed), ("Not known", found.first_unknown or ["nothing that was asked"])]
     return Answer(
         found.title,
@@ -252,13 +252,13 @@ def rerun(
     before = load(file, problems=False)
     refuse_unfinished(before, file)
     with Store.open(file) as store:
-        made, fingerprint, kept = store.made, store.fingerprint, store.study or {}
-    if not kept.get("source") and fingerprint == FROM_PYTHON:
+        earlier, fingerprint, stored = store.made, store.fingerprint, store.study or {}
+    if not stored.get("source") and fingerprint == FROM_PYTHON:
         raise ValueError(
             f"{file}: this file keeps no study to run again, as it was saved from Python (graph.save): the script that made it computes it anew. "
             "Files that contvines diagram, atlas and chart write keep theirs; a study may name a flow or a machine in a Python file."
         )
-    study, source = kept_study(file, kept.get("source"), trust)
+    study, source = kept_study(file, stored.get("source"), trust)
     target = place_of(output, file, "-rerun.vines")
     command = source["command"]
     if command == "atlas" and not isinstance(before, Chart) and "budget" in before.settings:
@@ -280,13 +280,13 @@ def rerun(
             found = differences(of_graph(before), of_graph(after))
             same = study.fingerprint(command) == fingerprint
     if json:
-        tell(None, {"before": made, "after": provenance(), "same_study": same, "differences": found})
+        tell(None, {"before": earlier, "after": provenance(), "same_study": same, "differences": found})
     else:
         if not same:
             say("what the study names has changed since: the two results are of different studies.")
         typer.echo("\n".join([_size(after), *(found or ["no differences"])]))
         if not quiet:
-            typer.echo(f"before: {as_text(made) or 'made by a version that did not say so'}")
+            typer.echo(f"before: {as_text(earlier) or 'made by a version that did not say so'}")
             typer.echo(f"after:  {as_text(provenance())}")
     if found or not same:
         raise typer.Exit(1)

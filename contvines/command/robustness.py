@@ -64,8 +64,10 @@ def robustness(
         raise ValueError(without_problem(name, branch.description))
     value = None if place is None else float(branch.values[place])
     if at is not None:
-        there = inside("--at", at, graph.parameter, graph.within, graph.units, f"the interval of {file}")
-        value = there if value is None else value
+        inside_value = inside(
+            "--at", at, graph.parameter, graph.within, graph.units, f"the interval of {file}"
+        )
+        value = inside_value if value is None else value
     if plot is not None and value is not None:
         raise ValueError("--plot draws the erosion curve of a whole branch: leave out --at and the point.")
     if value is None:

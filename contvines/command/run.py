@@ -228,7 +228,7 @@ def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems:
         say(f"{target} was stopped at budget = {graph.settings['budget']}: going on to {budget}.", quiet)
         graph = None
     if graph is None:
-        alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
+        extra = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
         run, start = (run_atlas, population) if command == "atlas" else (run_diagram, first_orbit)
         seed = start(study)
         graph = made(
@@ -236,15 +236,15 @@ def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems:
             fingerprint,
             study.kept(command, target),
             quiet,
-            lambda **to: run(study, seed, **to, **alone),
+            lambda **to: run(study, seed, **to, **extra),
         )
         say(f"kept in {target}", quiet)
     elif not look or graph.looked:
         say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
-    return _looked(study, target) if look and not graph.looked else graph
+    return _with_missing(study, target) if look and not graph.looked else graph
 
 
-def _looked(study: Study, target: Path) -> Graph:
+def _with_missing(study: Study, target: Path) -> Graph:
     """Run the brief search after a diagram, and store its result in the file; return the graph with the missing attractors.
 
     The graph is read from its file, so that the result does not depend on whether a run was killed during the search.
@@ -294,8 +294,8 @@ def _shows_response(graph: Graph, y: str | None) -> bool:
     """Whether the picture shows a displacement, for which simulations give the band of modulated motions."""
     from ..graph.stretches import default_measure
 
-    shown = default_measure(graph)
-    return shown.startswith("max_") and y in (None, shown)
+    measure = default_measure(graph)
+    return measure.startswith("max_") and y in (None, measure)
 
 
 def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
@@ -306,11 +306,11 @@ def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
     from ..survey.completion import simulated
     from .compose import population
 
-    met = simulated(graph, population(study))
-    plain = [(value, high) for value, low, _, high in met if low == high]
+    motions = simulated(graph, population(study))
+    plain = [(value, high) for value, low, _, high in motions if low == high]
     if plain:
         axes.plot(*zip(*plain), ".", color=SIMULATED, zorder=1.6, label="simulated")
-    draw_bands(axes, [band for band in met if band[1] < band[3]], SIMULATED)
-    if met and axes.get_legend() is not None:
+    draw_bands(axes, [band for band in motions if band[1] < band[3]], SIMULATED)
+    if motions and axes.get_legend() is not None:
         with styled():
             place_legend(axes, (), "best", False)

@@ -243,8 +243,8 @@ def number(entry: Parameter) -> Any:
     """Return the type of a parameter's values in a study: a number within its limits, or one of its words."""
     limits = entry.limits.in_studies
     ends = {"gt" if limits.open else "ge": limits.low, "le": limits.high}
-    about = {"description": f"{entry.meaning}; for example {entry.example:g}"}
-    kind = Annotated[float, Field(description=expected_value(entry), json_schema_extra=about, **ends)]  # type: ignore[arg-type]
+    entry_schema = {"description": f"{entry.meaning}; for example {entry.example:g}"}
+    kind = Annotated[float, Field(description=expected_value(entry), json_schema_extra=entry_schema, **ends)]  # type: ignore[arg-type]
     if not entry.words:
         return kind
 
@@ -252,7 +252,7 @@ def number(entry: Parameter) -> Any:
         return entry.words.get(value, value) if isinstance(value, str) else value
 
     span = {"type": "number", "minimum": limits.low, "maximum": limits.high}
-    written = {"anyOf": [{"enum": list(entry.words)}, span], **about}
+    written = {"anyOf": [{"enum": list(entry.words)}, span], **entry_schema}
     return Annotated[kind, BeforeValidator(coded), WithJsonSchema(written)]
 
 
@@ -276,11 +276,11 @@ def study_model(
     start = _section(
         kinds["start"], {k: (kind | None, None) for k, kind in parameters.items() if k not in own}
     )
-    go, chart = (_section(kinds[name], {"parameter": (chosen, ...)}) for name in ("continue_", "chart"))
+    section, chart = (_section(kinds[name], {"parameter": (chosen, ...)}) for name in ("continue_", "chart"))
     sections: dict[str, Any] = {
         "model": (_section(Section, settings), ...),
         "start": (start, start()),
-        "continue_": (Annotated[go, Field(alias="continue")], ...),
+        "continue_": (Annotated[section, Field(alias="continue")], ...),
         "chart": (chart | None, None),
     }
     return create_model(base.__name__, __base__=base, **sections)
@@ -303,10 +303,10 @@ def kind_of(field: FieldInfo) -> type[Section]:
 
 def values_of(file: Any, names: Iterable[str]) -> dict[str, Any]:
     """Return the values (or defaults) of some names in a checked study; a value in `[start]` replaces that in `[model]`."""
-    said = {}
+    values = {}
     for section in (file.model, file.start):
-        said |= section.model_dump(by_alias=True, exclude_none=True)
-    return {name: said[name] for name in names if name in said}
+        values |= section.model_dump(by_alias=True, exclude_none=True)
+    return {name: values[name] for name in names if name in values}
 
 
 def catalogue_model(name: str) -> type[StudySections]:

@@ -50,19 +50,19 @@ def read_study(path: str | Path) -> Study:
         return study_of(path.read_text(encoding="utf-8-sig"), path)
     except FileNotFoundError:
         near = did_you_mean(path.name, (other.name for other in path.parent.glob("*.toml")))
-        why = f"there is no such file{near}; give the path of a TOML study."
+        reason = f"there is no such file{near}; give the path of a TOML study."
     except IsADirectoryError:
-        why = "this is a folder; give the path of a TOML study."
+        reason = "this is a folder; give the path of a TOML study."
     except OSError as error:
-        why = f"cannot be read ({error.strerror})."
+        reason = f"cannot be read ({error.strerror})."
     except UnicodeDecodeError:
         hint = (
             "It is a database: commands that take a study want the .toml file."
             if is_database(path)
             else "Save it as UTF-8."
         )
-        why = f"this is not a TOML file (it is no text in UTF-8). {hint}"
-    raise StudyError(f"{path}: {why}")
+        reason = f"this is not a TOML file (it is no text in UTF-8). {hint}"
+    raise StudyError(f"{path}: {reason}")
 
 
 def study_of(text: str, path: Path) -> Study:
@@ -82,18 +82,18 @@ def study_of(text: str, path: Path) -> Study:
 def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     """Check a study given as nested dicts; see `read_study`."""
     path, model = Path(path), data.get("model")
-    about = model if isinstance(model, dict) else {}
-    said = str(about.get("name", ""))
+    section = model if isinstance(model, dict) else {}
+    name = str(section.get("name", ""))
     try:
         data, conditions, tables = without_tables(data)
-        if ".py" in said or said in (*PAGES, STRUCTURE):
+        if ".py" in name or name in (*PAGES, STRUCTURE):
             from .own_study import read_own as read
-        elif "units" in data or "units" in about:
+        elif "units" in data or "units" in section:
             from .physical_study import read_physical as read
         else:
             from .catalogue_study import read_catalogue as read
 
-            for key, value in about.items():
+            for key, value in section.items():
                 if isinstance(value, str) and QUANTITY.fullmatch(value):
                     raise StudyError(
                         f'[model] {key} = {value!r}: quantities want units = "si" on the first line of the study.'
@@ -194,12 +194,12 @@ def _hint(text: str) -> str:
     lines = text.splitlines()
     for number, line in enumerate(lines, start=1):
         found = _LINE.match(line[:1000])
-        if found and (what := _habit(found["value"])):
+        if found and (habit := _habit(found["value"])):
             try:
                 tomllib.loads("\n".join(lines[: number - 1]))
             except (ValueError, RecursionError):
                 return ""
-            return f"{found['key'][:60]} = {found['value'][:60]} (line {number}): {what}"
+            return f"{found['key'][:60]} = {found['value'][:60]} (line {number}): {habit}"
     return ""
 
 
@@ -230,10 +230,10 @@ def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, floa
         if not isinstance(values, dict):
             continue
         plain[section] = dict(values)
-        for name, said in values.items():
-            if not isinstance(said, dict) or (section == "start" and name == "state"):
+        for name, entry in values.items():
+            if not isinstance(entry, dict) or (section == "start" and name == "state"):
                 continue
-            table, unit = _table(f"[{section}] {name}", name, said)
+            table, unit = _table(f"[{section}] {name}", name, entry)
             if table.condition not in conditions:
                 raise StudyError(
                     f"[{section}] {name} depends on {table.condition}, which has no value{did_you_mean(table.condition, conditions)}: "
@@ -245,17 +245,17 @@ def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, floa
                 raise StudyError(f"[conditions] {error}.") from None
             plain[section][name] = f"{value!r} {unit}" if unit else value
             tables.append(table)
-    known = {table.condition for table in tables}
+    conditions_used = {table.condition for table in tables}
     for name in conditions:
-        if name not in known:
+        if name not in conditions_used:
             raise StudyError(
-                f"[conditions] {name} = {conditions[name]:g}: nothing depends on it{did_you_mean(name, known)}; a parameter would by a table, "
+                f"[conditions] {name} = {conditions[name]:g}: nothing depends on it{did_you_mean(name, conditions_used)}; a parameter would by a table, "
                 f"for example restitution = {EXAMPLE.replace('temperature', name)}."
             )
     for section in ("continue", "chart"):
-        said = data.get(section)
+        entry = data.get(section)
         for table in tables:
-            if isinstance(said, dict) and said.get("parameter") == table.parameter:
+            if isinstance(entry, dict) and entry.get("parameter") == table.parameter:
                 raise StudyError(
                     f"[{section}] parameter = {table.parameter!r} depends on {table.condition}: give it one number in [model], or another parameter."
                 )
@@ -273,28 +273,30 @@ def _conditions(given: object) -> dict[str, float]:
     return {name: float(value) for name, value in given.items()}
 
 
-def _table(place: str, name: str, said: Mapping[str, Any]) -> tuple[Table, str]:
+def _table(place: str, name: str, entry: Mapping[str, Any]) -> tuple[Table, str]:
     """Return a table with its values in the unit of the first one, and that unit."""
-    rows = next(iter(said.values()), None)
+    rows = next(iter(entry.values()), None)
     pairs = isinstance(rows, list) and all(isinstance(row, list) and len(row) == 2 for row in rows)
-    if len(said) != 1 or not pairs:
+    if len(entry) != 1 or not pairs:
         raise StudyError(
-            f"{place} = {said!r}: expected a number, or a table over one condition, {name} = {EXAMPLE}."
+            f"{place} = {entry!r}: expected a number, or a table over one condition, {name} = {EXAMPLE}."
         )
     from orbits.machines.physical.quantities import QuantityError
     from orbits.machines.physical.units import counted, number_and_unit
 
-    condition, unit = next(iter(said)), ""
+    condition, unit = next(iter(entry)), ""
     places, values = [], []
-    for where, value in rows:  # type: ignore[union-attr]
+    for place_text, value in rows:  # type: ignore[union-attr]
         try:
             if isinstance(value, str):
                 unit = unit or number_and_unit(value)[1]
                 value = counted(name, value, unit)
-            places.append(float(where))
+            places.append(float(place_text))
             values.append(float(value))
         except (QuantityError, TypeError, ValueError) as error:
-            raise StudyError(f"{place}, the row [{where!r}, {value!r}]: {str(error).rstrip('.')}.") from None
+            raise StudyError(
+                f"{place}, the row [{place_text!r}, {value!r}]: {str(error).rstrip('.')}."
+            ) from None
     try:
         return Table(name, condition, tuple(places), tuple(values)), unit
     except ParameterError as error:

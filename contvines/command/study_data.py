@@ -153,19 +153,19 @@ class Study:
         **machine: Any,
     ) -> Study:
         """Make a study from its checked sections; further arguments are the attributes of the machine or flow."""
-        go = file.continue_
-        said = {**dict(file), "model": None, **dict(file.start), **dict(go)}
+        section = file.continue_
+        sections = {**dict(file), "model": None, **dict(file.start), **dict(section)}
         own: dict[str, Any] = {
             "path": path,
             "sort": sort,
             "name": name,
             "parameters": parameters,
-            "within": tuple(go.within),
-            "settings": go.model_dump(include=SETTINGS, exclude_none=True),
-            "bounds": {measure: (low, high) for measure, (low, high) in go.bounds.items()},
+            "within": tuple(section.within),
+            "settings": section.model_dump(include=SETTINGS, exclude_none=True),
+            "bounds": {measure: (low, high) for measure, (low, high) in section.bounds.items()},
         }
-        known = {entry.name: said[entry.name] for entry in fields(cls) if entry.name in said}
-        return cls(**known | own | machine)
+        shared = {entry.name: sections[entry.name] for entry in fields(cls) if entry.name in sections}
+        return cls(**shared | own | machine)
 
     @property
     def named_state(self) -> dict[str, float] | None:
@@ -180,15 +180,15 @@ class Study:
     def describe(self) -> dict[str, Any]:
         """Return everything that determines the result, JSON-able."""
         start: dict[str, Any] = {"word": self.word, "periods": self.periods, "guess": self.guess}
-        go: dict[str, Any] = {"parameter": self.parameter, "within": list(self.within), **self.options}
+        section: dict[str, Any] = {"parameter": self.parameter, "within": list(self.within), **self.options}
         if self.state and self.sort is Sort.PAGE:
             start["state"] = self.state
         if self.bounds:  # as text: JSON has no infinity
-            go["bounds"] = {name: [repr(end) for end in ends] for name, ends in self.bounds.items()}
+            section["bounds"] = {name: [repr(end) for end in ends] for name, ends in self.bounds.items()}
         if self.kinds:
-            go["kinds"] = [self.kinds, self.kinds_digest]
+            section["kinds"] = [self.kinds, self.kinds_digest]
         more = {"conditions": self.conditions} if self.conditions else {}
-        return {"model": self._model(), "start": start, "continue": go, **more}
+        return {"model": self._model(), "start": start, "continue": section, **more}
 
     def having(self, section: str, **values: Any) -> Study:
         """Return the study with other values in a section (`sweep`, `atlas` or `survey`)."""
@@ -230,9 +230,9 @@ def without_word(study: Study, refusal: object) -> str:
     """Return the error message for a study's first orbit, with a remedy if the study gives its word."""
     if study.word is None:
         return str(refusal)
-    shown = study.word if len(study.word) <= SHOWN else study.word[: SHOWN - 3] + "..."
+    text = study.word if len(study.word) <= SHOWN else study.word[: SHOWN - 3] + "..."
     return (
-        f"{str(refusal).rstrip('.')}; or delete the line word = {json.dumps(shown)} of [start] (periods and guess, too): "
+        f"{str(refusal).rstrip('.')}; or delete the line word = {json.dumps(text)} of [start] (periods and guess, too): "
         "the motion that settles from rest is taken then"
     )
 
@@ -253,27 +253,27 @@ def wrong_intervals(
     unit : str
         Of the continuation parameter.
     """
-    go, wrong = file.continue_, []
-    intervals = [("continue", go.parameter, go.within)]
+    continued, wrong = file.continue_, []
+    intervals = [("continue", continued.parameter, continued.within)]
     if isinstance(file, MachineSections) and file.sweep.within is not None:
-        intervals.append(("sweep", go.parameter, file.sweep.within))
+        intervals.append(("sweep", continued.parameter, file.sweep.within))
     if file.chart is not None:
         intervals.append(("chart", file.chart.parameter, file.chart.within))
     for section, name, (low, high) in intervals:
-        why = next(filter(None, (refusal(name, value) for value in (low, high))), "")
+        reason = next(filter(None, (refusal(name, value) for value in (low, high))), "")
         if low >= high:
-            why = (
+            reason = (
                 " is empty; expected low < high."
                 if low == high
                 else " is reversed; give the lower end first."
             )
-        wrong += [f"[{section}] within = {[low, high]!r}{why}"] if why else []
-    low, high = go.within
+        wrong += [f"[{section}] within = {[low, high]!r}{reason}"] if reason else []
+    low, high = continued.within
     if first is not None and low < high and not low <= first <= high:
-        said = f"{first!r} lies outside [continue] within = [{low!r}, {high!r}]"
+        text = f"{first!r} lies outside [continue] within = [{low!r}, {high!r}]"
         if unit:
-            said = f"{first:g} {unit} lies outside [continue] within = [{low:g}, {high:g}] {unit}"
-        wrong.append(f"[start] {go.parameter} = {said}; start inside the interval, or widen it.")
+            text = f"{first:g} {unit} lies outside [continue] within = [{low:g}, {high:g}] {unit}"
+        wrong.append(f"[start] {continued.parameter} = {text}; start inside the interval, or widen it.")
     return wrong
 
 
@@ -340,34 +340,34 @@ def _sentence(model: type[Section], loc: list[int | str], error: ErrorDetails) -
         if kind == "missing":
             return f"the section [{section}] is missing; it holds {SECTIONS[section]}."
         if kind == "extra_forbidden":
-            known = ", ".join(f"[{name}]" for name in sections)
+            names = ", ".join(f"[{name}]" for name in sections)
             written = f"[{section}]" if isinstance(given, dict) else f"{section} = {value}"
             return (
-                f"{written}: there is no such section{did_you_mean(section, sections)}; a study has {known}."
+                f"{written}: there is no such section{did_you_mean(section, sections)}; a study has {names}."
             )
         return (
             f"{section} = {value} is not a section; write [{section}] on a line of its own, its keys below."
         )
     key, fields = _cut(str(loc[1])), _fields(sections[section])
     place = f"[{section}] {key}" + "".join(f"[{i}]" for i in loc[2:])
-    said = f"{place} = {value}"
+    head = f"{place} = {value}"
     if kind == "extra_forbidden":
         if section == "model" and key in _fields(sections["start"]):
-            return f"{said}: this belongs to [start], beside the word."
-        return f"{said}: there is no such field{did_you_mean(key, fields)}; known are {', '.join(fields)}."
+            return f"{head}: this belongs to [start], beside the word."
+        return f"{head}: there is no such field{did_you_mean(key, fields)}; known are {', '.join(fields)}."
     if kind == "literal_error":
-        known = re.findall(r"'([^']*)'", str(error.get("ctx", {})["expected"]))
-        what = "parameter" if key == "parameter" else "choice"
-        return f"{said}: there is no such {what}{did_you_mean(str(given), known)}; choose one of {', '.join(known)}."
+        names = re.findall(r"'([^']*)'", str(error.get("ctx", {})["expected"]))
+        noun = "parameter" if key == "parameter" else "choice"
+        return f"{head}: there is no such {noun}{did_you_mean(str(given), names)}; choose one of {', '.join(names)}."
     if kind == "missing":
-        said = f"{place} is missing"
+        head = f"{place} is missing"
     elif kind == "string_too_long":
-        said = f"{place} has {len(given)} letters"
+        head = f"{place} has {len(given)} letters"
     elif kind in ("too_short", "too_long"):
-        said += f" has {len(given)} entries"
+        head += f" has {len(given)} entries"
     else:
-        said += f" {WRONG.get(kind, 'cannot be used')}"
-    return f"{said}; expected {_expected(fields[str(loc[1])])}."
+        head += f" {WRONG.get(kind, 'cannot be used')}"
+    return f"{head}; expected {_expected(fields[str(loc[1])])}."
 
 
 def _fields(section: FieldInfo) -> dict[str, FieldInfo]:

@@ -81,9 +81,9 @@ def survey(
             f"--workers {workers} and --cluster {cluster} exclude each other; leave one of them out."
         )
     if best is not None:
-        from .best import asking, check_over, read_wish
+        from .best import asking, check_over, read_goal
 
-        wish = read_wish(best)
+        wish = read_goal(best)
         check_over(read, over or [])
         read = asking(read, wish.outcome)
     found = surveyed(read, target, workers, cluster, fresh, quiet)

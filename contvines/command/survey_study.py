@@ -45,19 +45,19 @@ def plan_and_machine(study: Study) -> tuple[Plan, Any]:
     from ..survey import planned
     from .compose import machine
 
-    said = dict(study.survey.vary)
+    vary = dict(study.survey.vary)
     model = study.flow if study.sort is Sort.FLOW else machine(study)
-    known = [*names_of(study), *study.conditions]
+    names = [*names_of(study), *study.conditions]
     follows = {table.parameter: table.condition for table in study.tables}
-    for name in said:
+    for name in vary:
         if name in follows:
             raise ValueError(
                 f"{study.path}: [survey] vary.{name}: {name} depends on {follows[name]}; vary {follows[name]}, or give {name} one number in [model]."
             )
-        if name not in known:
+        if name not in names:
             raise ValueError(
                 f"{study.path}: [survey] vary.{name}: the model {study.name!r} has no such parameter"
-                f"{near_quantity(name, known)}; it has {', '.join(known)}."
+                f"{near_quantity(name, names)}; it has {', '.join(names)}."
             )
         if name == study.parameter:
             raise ValueError(
@@ -65,9 +65,9 @@ def plan_and_machine(study: Study) -> tuple[Plan, Any]:
             )
         if study.sort is Sort.PHYSICAL and name not in study.conditions:
             model = model.given_by(name)
-            said[name] = _numbers(model, name, said[name], f"{study.path}: [survey] vary.{name}")
+            vary[name] = _numbers(model, name, vary[name], f"{study.path}: [survey] vary.{name}")
     with refused(str(study.path)):
-        plan = planned(said, study.survey.sampling, study.survey.samples, study.survey.seed)
+        plan = planned(vary, study.survey.sampling, study.survey.samples, study.survey.seed)
         for name, values in {**plan.axes, **plan.samples}.items():
             check_range(study.tables, name, values.tolist(), f"[survey] vary.{name}")
         if study.sort is Sort.PAGE:
@@ -112,28 +112,28 @@ def outcomes_of(study: Study) -> list[Outcome]:
     ValueError
         If a name or a file is unknown.
     """
-    return [_outcome(study, said) for said in _spelled(study)]
+    return [_outcome(study, name) for name in _spelled(study)]
 
 
-def _outcome(study: Study, said: str) -> Outcome:
+def _outcome(study: Study, name: str) -> Outcome:
     from orbits.machines.measures import way_out
 
     from ..survey.survey import outcome_named
     from .compose import measures_of
 
-    place, known = f"[survey] outcomes: {said!r}", measures_of(study)
-    file, _, function = said.rpartition(":")
-    measure = said.removeprefix("largest:")
+    place, names = f"[survey] outcomes: {name!r}", measures_of(study)
+    file, _, function = name.rpartition(":")
+    measure = name.removeprefix("largest:")
     with refused(str(study.path)):
-        if said.startswith("share:") and not (study.survey.atlas or study.survey.values):
+        if name.startswith("share:") and not (study.survey.atlas or study.survey.values):
             raise ValueError(
                 f"{place} is a share of simulated starts, and there are none: with atlas = true an atlas of each "
                 "machine is made, with values = 9 and starts = 16 each is simulated at nine values"
             )
-        if measure != said and measure not in known:
+        if measure != name and measure not in names:
             raise ValueError(
-                f"{place}: there is no such measure{way_out(measure) or did_you_mean(measure, known)}; "
-                f"choose one of {', '.join(known)}"
+                f"{place}: there is no such measure{way_out(measure) or did_you_mean(measure, names)}; "
+                f"choose one of {', '.join(names)}"
             )
         if file.endswith(".py"):
             path = own_code(study.path, file, place)
@@ -143,12 +143,12 @@ def _outcome(study: Study, said: str) -> Outcome:
             if not callable(own.loaded):
                 raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
             return own
-        if study.sort in WRITTEN and said in OWN and not (said == "dissipation" and "impact_loss" in known):
+        if study.sort in WRITTEN and name in OWN and not (name == "dissipation" and "impact_loss" in names):
             raise ValueError(
                 f"{place} is known for the built-in machines (dissipation also by a declared machine with energy=); for equations of "
                 'your own give a function of your own: "file.py:function"'
             )
-        return outcome_named(said, OWN)
+        return outcome_named(name, OWN)
 
 
 def _spelled(study: Study) -> list[str]:
@@ -164,16 +164,16 @@ def _spelled(study: Study) -> list[str]:
         return study.survey.outcomes
     model, params = study.model, study.model.vector(study.loose)
     found = []
-    for said in study.survey.outcomes:
-        kind, _, text = said.partition(":")
+    for name in study.survey.outcomes:
+        kind, _, text = name.partition(":")
         if kind in ("stable", "share") and text:
             try:
                 word = Word.parse(text, frictionless=model.frictionless(params))
-                said = f"{kind}:{word.spelled(model.has_mirror(params, study.parameter))}"
+                name = f"{kind}:{word.spelled(model.has_mirror(params, study.parameter))}"
             except ValueError as error:  # the outcome `share` accepts a kind of motion, too
                 if kind == "stable":
-                    raise ValueError(f"{study.path}: [survey] outcomes: {said!r}: {error}.") from None
-        found.append(said)
+                    raise ValueError(f"{study.path}: [survey] outcomes: {name!r}: {error}.") from None
+        found.append(name)
     return found
 
 
@@ -187,8 +187,8 @@ def asked_of(study: Study) -> dict[str, Any]:
 
 def ways_of(study: Study) -> dict[str, Any]:
     """Return the arguments of `contvines.survey` about simulations and atlases that a study sets."""
-    said = {key: getattr(study.survey, key) for key in ("gaps", "values", "starts")}
-    return {**said, "atlas": study.atlas.model_dump() if study.survey.atlas else None}
+    numbers = {key: getattr(study.survey, key) for key in ("gaps", "values", "starts")}
+    return {**numbers, "atlas": study.atlas.model_dump() if study.survey.atlas else None}
 
 
 def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
@@ -198,12 +198,12 @@ def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
     if not isinstance(model, Varying) or not model.units:
         return {}
     over = model.units.get(study.parameter, "")
-    shown = model.units.get(flow_of(model).default_measure(model), "")
+    unit = model.units.get(flow_of(model).default_measure(model), "")
     responses = "peak", "lower_peak", "modulated_low", "modulated_mean", "modulated_high"
     places = "peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"
-    units = model.units | dict.fromkeys(responses, shown) | UNITS | dict.fromkeys(places, over)
-    for said in _spelled(study):
-        kind, _, rest = said.partition(":")
+    units = model.units | dict.fromkeys(responses, unit) | UNITS | dict.fromkeys(places, over)
+    for name in _spelled(study):
+        kind, _, rest = name.partition(":")
         if kind == "stable":
             units |= dict.fromkeys((f"stable_{rest}", f"stable_{rest}_from", f"stable_{rest}_to"), over)
         elif kind == "first":
@@ -232,7 +232,7 @@ class UserOutcome:
         return value if isinstance(value, Mapping) else {self.function: float(value)}
 
 
-def _numbers(model: Physical, name: str, said: object, place: str) -> object:
+def _numbers(model: Physical, name: str, given: object, place: str) -> object:
     """Convert quantities in a specification of `vary` to numbers in the machine's unit."""
     from .physical_study import number_of
 
@@ -241,11 +241,11 @@ def _numbers(model: Physical, name: str, said: object, place: str) -> object:
             return values
         return [number_of(model, name, value, f"{where}[{i}]", i == spread) for i, value in enumerate(values)]
 
-    if not isinstance(said, dict):
-        return read(said, place)
+    if not isinstance(given, dict):
+        return read(given, place)
     return {
         key: read(value, f"{place}.{key}", 1 if key == "normal" else None) if key in TEXTS else value
-        for key, value in said.items()
+        for key, value in given.items()
     }
 
 

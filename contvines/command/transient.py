@@ -160,20 +160,20 @@ def _started(study: Study, begin: str | None, over: str | None) -> Told:
     model, params = study.model, study.model.vector(study.loose)
     scales = Scales(model, params)
     run_up, rising = None, ""
-    if said := _run_up(study, begin, over, scales.unit("time")):
-        own = said[0] / model.amount("frequency", params) * float(model.phase_speed(params))
-        run_up = own, said[1] / scales.factor("time")
+    if run_up_given := _run_up(study, begin, over, scales.unit("time")):
+        own = run_up_given[0] / model.amount("frequency", params) * float(model.phase_speed(params))
+        run_up = own, run_up_given[1] / scales.factor("time")
         rising = f", its frequency running up from {begin} in {over}"
     with refused(f"{study.path}: --start-up"):
-        seen = start_up(model, params, run_up=run_up)
-    count, hardest = seen.impact_times.size, float(seen.impact_speeds.max(initial=0.0))
+        motion = start_up(model, params, run_up=run_up)
+    count, hardest = motion.impact_times.size, float(motion.impact_speeds.max(initial=0.0))
     eps, r = (float(model.column(params, name)) for name in ("mass_ratio", "restitution"))
     impulse = (1.0 + r) / (1.0 + eps) * hardest * scales.factor("impulse")
-    relative = max(np.abs(seen.relative).max(), 1.0 if count else 0.0)
+    relative = max(np.abs(motion.relative).max(), 1.0 if count else 0.0)
     figures: Rows = [
-        *_peaks(seen, "largest displacement of the oscillator"),
-        ("settled", seen.settled, "time", "time to settle to 5 % (no number: it does not)"),
-        ("bare_settled", seen.bare_settled, "time", "the same without absorber"),
+        *_peaks(motion, "largest displacement of the oscillator"),
+        ("settled", motion.settled, "time", "time to settle to 5 % (no number: it does not)"),
+        ("bare_settled", motion.bare_settled, "time", "the same without absorber"),
         ("impacts", count, "", "how many"),
         ("fastest_impact", hardest, "velocity", "largest impact speed"),
     ]
@@ -181,9 +181,9 @@ def _started(study: Study, begin: str | None, over: str | None) -> Told:
         *scales.rows(figures),
         *loads_rows(impulse, count, model.contact_time, model.units),
         *scales.rows([("worst_relative", relative, "length", "largest relative displacement")]),
-        *([_share(seen)] if run_up is None else []),
+        *([_share(motion)] if run_up is None else []),
     ]
-    return _motion(f"Start-up of {study.path.name} from rest{rising}", scales, rows, seen)
+    return _motion(f"Start-up of {study.path.name} from rest{rising}", scales, rows, motion)
 
 
 def _recorded(study: Study, path: Path, tail: str | None) -> Told:
@@ -209,42 +209,42 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
             f"at most {HARDEST:g} m/s^2; name the unit in the head of its column, or, if it is meant, say unusual = true in [model]."
         )
     with refused(str(path)):
-        seen = recorded(model, params, times / seconds, acceleration / (scales.metre / seconds**2), after)
+        motion = recorded(model, params, times / seconds, acceleration / (scales.metre / seconds**2), after)
     rows: Rows = [
-        *_peaks(seen, "largest displacement of the oscillator from the base"),
-        ("impacts", seen.impact_times.size, "", "how many"),
-        ("impact_energy", seen.impacts, "energy", "dissipated by impacts"),
-        ("friction_energy", seen.friction, "energy", "by friction"),
-        ("damping_energy", seen.damping, "energy", "by the oscillator's own damping"),
-        _share(seen),
+        *_peaks(motion, "largest displacement of the oscillator from the base"),
+        ("impacts", motion.impact_times.size, "", "how many"),
+        ("impact_energy", motion.impacts, "energy", "dissipated by impacts"),
+        ("friction_energy", motion.friction, "energy", "by friction"),
+        ("damping_energy", motion.damping, "energy", "by the oscillator's own damping"),
+        _share(motion),
     ]
     title = f"{study.path.name} under the base motion of {path.name}, {times.size} instants"
-    return _motion(title, scales, scales.rows(rows), seen)
+    return _motion(title, scales, scales.rows(rows), motion)
 
 
-def _peaks(seen: StartUp | Response, words: str) -> Rows:
-    moved = np.abs(seen.oscillator)
+def _peaks(motion: StartUp | Response, words: str) -> Rows:
+    moved = np.abs(motion.oscillator)
     return [
         ("peak", moved.max(), "length", words),
-        ("peak_at", seen.times[moved.argmax()], "time", "when"),
-        ("bare_peak", np.abs(seen.bare).max(), "length", "the same without absorber"),
+        ("peak_at", motion.times[moved.argmax()], "time", "when"),
+        ("bare_peak", np.abs(motion.bare).max(), "length", "the same without absorber"),
     ]
 
 
-def _share(seen: StartUp | Response) -> tuple[str, float, str, str]:
+def _share(motion: StartUp | Response) -> tuple[str, float, str, str]:
     words = "share of the dissipated energy that impacts and friction take"
-    return "absorber_share", seen.absorber_share, "", words
+    return "absorber_share", motion.absorber_share, "", words
 
 
-def _motion(title: str, scales: Scales, rows: Rows, seen: StartUp | Response) -> Told:
+def _motion(title: str, scales: Scales, rows: Rows, motion: StartUp | Response) -> Told:
     """Convert a simulated motion with and without the absorber to the study's units."""
     series: Series = [
-        ("time", "time", seen.times),
-        ("oscillator", "length", seen.oscillator),
-        ("relative", "length", seen.relative),
-        ("bare_oscillator", "length", seen.bare),
+        ("time", "time", motion.times),
+        ("oscillator", "length", motion.oscillator),
+        ("relative", "length", motion.relative),
+        ("bare_oscillator", "length", motion.bare),
     ]
-    return Told(title, rows, scales.columns(series), seen.impact_times * scales.factor("time"))
+    return Told(title, rows, scales.columns(series), motion.impact_times * scales.factor("time"))
 
 
 def _run_up(study: Study, begin: str | None, over: str | None, second: str) -> tuple[float, float] | None:
@@ -273,44 +273,44 @@ def of_page(
     from orbits.machines.page.si import CONTACT
 
     machine = study.model
-    params, shown = machine.vector(study.loose), machine.units
-    second = shown.get("time", "")
+    params, units = machine.vector(study.loose), machine.units
+    second = units.get("time", "")
     start = dict(study.named_state or {}) if release is None else _states(study, release)
     run_up = _run_up(study, begin, over, second)
     rising = dict(zip(("run_up_from", "run_up_time"), run_up or ()))
     with refused(str(study.path)):
         lasts = None if within is None else counted("--time", within, second)
-        seen = page_transient(machine, params, start, time=lasts, **rising)
+        motion = page_transient(machine, params, start, time=lasts, **rising)
     rows: Rows = []
-    for name in seen.states:
-        unit = shown.get(name, "")
-        rows.append((f"largest_{name}", seen.largest[name], unit, f"largest size of {name}"))
+    for name in motion.states:
+        unit = units.get(name, "")
+        rows.append((f"largest_{name}", motion.largest[name], unit, f"largest size of {name}"))
         if release is None:
             words = "time to settle to 5 % (no number: it does not)"
-            rows.append((f"settled_{name}", seen.settled[name], second, words))
-    count = seen.impact_times.size
-    speed = shown.get("approach_speed", "")
+            rows.append((f"settled_{name}", motion.settled[name], second, words))
+    count = motion.impact_times.size
+    speed = units.get("approach_speed", "")
     rows += [("impacts", float(count), "", "how many")] if machine.equations.gap else []
     if count:
-        rows.append(("fastest_impact", float(seen.impact_speeds.max()), speed, "largest impact speed"))
-    if seen.energy is not None:
+        rows.append(("fastest_impact", float(motion.impact_speeds.max()), speed, "largest impact speed"))
+    if motion.energy is not None:
         held = study.parameters.get(CONTACT)
         if held is not None:
             held *= machine.equations.factors.get(CONTACT, 1.0)
-        loads = {**shown, "contact_time": second} if shown else {}
-        rows += loads_rows(float(seen.impulses.max(initial=0.0)), count, held, loads)
-        joule = shown.get("impact_loss", "")
-        rows.append(("impact_energy", float(seen.impacts[-1]), joule, "taken by impacts"))
-        rows.append(("friction_energy", float(seen.friction[-1]), joule, "by friction"))
+        loads = {**units, "contact_time": second} if units else {}
+        rows += loads_rows(float(motion.impulses.max(initial=0.0)), count, held, loads)
+        joule = units.get("impact_loss", "")
+        rows.append(("impact_energy", float(motion.impacts[-1]), joule, "taken by impacts"))
+        rows.append(("friction_energy", float(motion.friction[-1]), joule, "by friction"))
         if release is not None:
-            end = float(seen.times[-1])
+            end = float(motion.times[-1])
             words = f"of the initial energy: taken by both in {figures(end)} {second}".rstrip()
-            rows.append(("taken_share", seen.share(end), "", words))
-    series = [("time", second, seen.times)]
-    series += [(name, shown.get(name, ""), values) for name, values in seen.states.items()]
-    series += [] if seen.energy is None else [("energy", shown.get("impact_loss", ""), seen.energy)]
-    what = f"from {release}" if release else "from its start" if start else "from rest"
-    return Told(f"Transient of {study.path.name} {what}", rows, series, seen.impact_times, drawn=2)
+            rows.append(("taken_share", motion.share(end), "", words))
+    series = [("time", second, motion.times)]
+    series += [(name, units.get(name, ""), values) for name, values in motion.states.items()]
+    series += [] if motion.energy is None else [("energy", units.get("impact_loss", ""), motion.energy)]
+    origin = f"from {release}" if release else "from its start" if start else "from rest"
+    return Told(f"Transient of {study.path.name} {origin}", rows, series, motion.impact_times, drawn=2)
 
 
 def _states(study: Study, text: str) -> dict[str, float]:
@@ -322,10 +322,10 @@ def _states(study: Study, text: str) -> dict[str, float]:
     for part in text.split(","):
         name, _, value = (side.strip() for side in part.partition("="))
         if name not in machine.states or not value:
-            known = ", ".join(machine.states)
+            names = ", ".join(machine.states)
             raise ValueError(
                 f"--release {text!r}: {name!r} is no state with a value{did_you_mean(name, machine.states)}; of a declared machine it is a list such as "
-                f'"{example}", and the states are {known}.'
+                f'"{example}", and the states are {names}.'
             )
         with refused(f"--release {text!r}"):
             found[name] = counted(name, value, machine.units.get(name, ""))

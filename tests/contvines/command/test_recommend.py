@@ -84,9 +84,11 @@ def work(monkeypatch):
             rows = np.array(
                 [[response(value, int(sample)) for sample in drawn] for value in plan.axes["gap"]]
             )
-            return recommending._Looked(rows, rows, np.where(np.isnan(rows), "not known", "").astype(object))
+            return recommending._Responses(
+                rows, rows, np.where(np.isnan(rows), "not known", "").astype(object)
+            )
 
-        work._looked = looked
+        work._computed = looked
         return work
 
     return begun
