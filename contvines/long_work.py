@@ -52,7 +52,7 @@ class _Listening(ContextDecorator):
         return _Listening()
 
     def __enter__(self) -> None:
-        if not _unheard():
+        if not _default_handler_active():
             return
         _state.listening = True
         try:
@@ -88,7 +88,7 @@ def listening() -> _Listening:
     return _Listening()
 
 
-def _unheard() -> bool:
+def _default_handler_active() -> bool:
     """Whether Python's default SIGINT handler is active and this is the main thread."""
     return get_ident() == MAIN and _plain.getsignal(signal.SIGINT) is signal.default_int_handler
 
@@ -122,7 +122,7 @@ class Section:
     def __enter__(self) -> None:
         if get_ident() != MAIN:
             return
-        if self.held and not _state.held and not _state.listening and _unheard():
+        if self.held and not _state.held and not _state.listening and _default_handler_active():
             _plain.signal(signal.SIGINT, _interrupted)
             _state.held, _state.alone = 1, True
         else:

@@ -67,11 +67,11 @@ class Orbit(Cycle):
         """Residual, multipliers of the period, and margins."""
         half = self.symmetric and bool(self.flow.loose(self.model, self.word))
         system = self.system(half)
-        residual, spectrum, margins = self._looked_at(system)
+        residual, spectrum, margins = self._examine(system)
         rounding = (margins < 0.0) & (margins >= REAL)
         return residual, system.to_multipliers(spectrum), np.where(rounding, 0.0, margins)
 
-    def _looked_at(self, system: Equations) -> tuple[float, np.ndarray, np.ndarray]:
+    def _examine(self, system: Equations) -> tuple[float, np.ndarray, np.ndarray]:
         return examined(system, system.reduce(self.nodes), system.value(system.params))
 
     @property
@@ -97,7 +97,7 @@ class Orbit(Cycle):
         """
         if not self.symmetric:
             raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
-        return self._looked_at(self.system(symmetric=True))[1]
+        return self._examine(self.system(symmetric=True))[1]
 
     def with_multipliers(self, multipliers: np.ndarray) -> Self:
         """Return the same orbit with given multipliers: at a border, one-sided limits along a branch.

@@ -374,7 +374,7 @@ class Meshes:
         """Transfer a point to a finer mesh, and solve for it there if `solve`; None if it cannot be solved."""
         while point is not None and detector is not wanted:
             before, detector = detector, self.finer(detector)
-            point = _read(point, before.engine, detector.engine)
+            point = _transferred(point, before.engine, detector.engine)
             point = MeshMotion(detector.engine).solved(point) if solve else point
         return point
 
@@ -385,7 +385,7 @@ class Meshes:
             finer, whole = detector.engine, half.joined()
             directions, slopes = problem.halved(whole.tangents[:, :-1], True), whole.tangents[:, -1]
             tangents = np.array([finer.unit(finer.join(v, float(s))) for v, s in zip(directions, slopes)])
-            events = [(i, replace(e, point=_read(e.point, engine, finer))) for i, e in half.events]
+            events = [(i, replace(e, point=_transferred(e.point, engine, finer))) for i, e in half.events]
             first = None if half.first is None else problem.halved(half.first)
             pieces = [whole._replace(points=problem.halved(whole.points), tangents=tangents)]
             half = HalfBranch(detector, pieces, events, half.status, first)
@@ -406,7 +406,7 @@ class Meshes:
 
         def image(point: Solved) -> Solved:
             read = self.moved(coarse, detector, point)
-            return read or _read(point, coarse.engine, detector.engine)
+            return read or _transferred(point, coarse.engine, detector.engine)
 
         return (found, image) if same else None
 
@@ -416,7 +416,7 @@ def _adaptive(engine: Engine) -> Adaptive:
     return engine.adaptive
 
 
-def _read(point: Solved, engine: Engine, finer: Engine) -> Solved:
+def _transferred(point: Solved, engine: Engine, finer: Engine) -> Solved:
     """Transfer a point to the next mesh without solving."""
     problem = _adaptive(engine)
     direction = problem.halved(point.tangent[:-1], True)

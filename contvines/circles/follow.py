@@ -81,7 +81,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     ended, found = family.follow(), family.found
     at_point = section(point.value)
     solved = tuple(_circle(section, curve, birth) for curve in found)
-    beyond = _beyond(section, found, birth) if found else {}
+    beyond = _motion_beyond(section, found, birth) if found else {}
     return Circles(
         point.label,
         point.parameter,
@@ -196,7 +196,7 @@ def _simulated(
     return None
 
 
-def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birth) -> dict[str, Any]:
+def _motion_beyond(section: Callable[[float], Section], found: list[Curve], birth: Birth) -> dict[str, Any]:
     """The motion on which a simulation a little beyond the last circle settles; see :attr:`Circles.beyond`."""
     last = found[-1]
     before = found[-2].value if len(found) > 1 else birth.p

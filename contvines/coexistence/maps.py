@@ -123,7 +123,7 @@ class MapPopulation(StartsInBox):
                 same = [
                     k
                     for k, earlier in cycles.items()
-                    if len(earlier) == period and self._one(points, earlier)
+                    if len(earlier) == period and self._same_cycle(points, earlier)
                 ]
                 if same:  # approached so slowly that the starts stand apart
                     index[i] = same[0]
@@ -152,7 +152,7 @@ class MapPopulation(StartsInBox):
                     continue
                 free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > MAPS.apart * self.size
                 points = self._solved(run[i : i + period], p)
-                if points is not None and not any(self._one(points, cycle) for cycle in cycles):
+                if points is not None and not any(self._same_cycle(points, cycle) for cycle in cycles):
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
@@ -167,7 +167,7 @@ class MapPopulation(StartsInBox):
             for period in range(1, EMBEDDED + 1):
                 with np.errstate(all="ignore"):  # far away a map may overflow
                     points = self._solved(np.repeat(start[None], period, axis=0), p, ANYWHERE)
-                if points is None or any(self._one(points, cycle) for cycle in cycles):
+                if points is None or any(self._same_cycle(points, cycle) for cycle in cycles):
                     continue
                 if np.any(np.all((points >= low) & (points <= high), axis=1)):
                     cycles.append(points)
@@ -199,7 +199,7 @@ class MapPopulation(StartsInBox):
                 return None
         return None
 
-    def _one(self, points: np.ndarray, cycle: np.ndarray) -> bool:
+    def _same_cycle(self, points: np.ndarray, cycle: np.ndarray) -> bool:
         """Whether a cycle equals a known one, or is a known one traversed several times."""
         gaps = np.abs(cycle - points[0]).max(axis=1)
         return len(points) % len(cycle) == 0 and bool(gaps.min() < MAPS.near * self.size)

@@ -218,7 +218,7 @@ def loose_ends(graph: Graph) -> list[End]:
     stretches = [s for s in stretches if s[1].value - s[0].value > ATLAS.narrow * size]
     firsts = np.array([first.value for first, _ in stretches])
     lasts = np.array([last.value for _, last in stretches])
-    wide = _together(firsts, lasts, MEETING * size) > ATLAS.narrow_chain * size
+    wide = _chain_widths(firsts, lasts, MEETING * size) > ATLAS.narrow_chain * size
     stretches = [s for s, is_wide in zip(stretches, wide, strict=True) if is_wide]
     found: dict[tuple[str, float, float], End] = {}
     for first, last in stretches:
@@ -229,7 +229,7 @@ def loose_ends(graph: Graph) -> list[End]:
     return list(found.values())
 
 
-def _together(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
+def _chain_widths(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
     """Return for each stretch the width of the chain of stretches, meeting end to end, to which it belongs; shape (n,)."""
     meeting = np.abs(firsts[None, :] - lasts[:, None]) <= near
     low, high = np.full((2, len(firsts)), np.inf)

@@ -311,7 +311,7 @@ class _Kicked:
         """
         place = np.repeat(self.places, len(directions), axis=0)
         along = np.tile(directions * self.sizes, (len(self.places), 1))
-        longest = self._room(place, along)
+        longest = self._ray_lengths(place, along)
         levels = (np.arange(LEVELS) + 1.0) / LEVELS
         kicks = place[:, None, :] + (longest[:, None] * levels)[..., None] * along[:, None, :]
         lost, names = np.zeros(kicks.shape[:2], dtype=bool), np.full(kicks.shape[:2], "", dtype=object)
@@ -337,7 +337,7 @@ class _Kicked:
         best = int(outside.argmin())
         return place[rays[best]], outside[best] * along[rays[best]], str(reaches[best])
 
-    def _room(self, place: np.ndarray, along: np.ndarray) -> np.ndarray:
+    def _ray_lengths(self, place: np.ndarray, along: np.ndarray) -> np.ndarray:
         """Return the length of each ray inside the box of starts, shape (m,)."""
         ends = np.where(along > 0.0, self.box[:, 1], self.box[:, 0])
         with np.errstate(divide="ignore", invalid="ignore"):

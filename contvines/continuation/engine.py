@@ -358,24 +358,24 @@ class Engine:
             near = approach(self.problem, u, p)
             found = None if near is None else self.at_value(near, p)
         found = found or self.at_value(u, p)
-        if found is not None and (self._near(u, found) or self.residual(u, p) >= SOLUTION.solved):
+        if found is not None and (self._near_guess(u, found) or self.residual(u, p) >= SOLUTION.solved):
             return found
         fixed = np.eye(min(self.n, 8), self.n + 1)
         others = [self.solve(u, p, border, float(u[i])) for i, border in enumerate(fixed)]
         inside = [
             other for other in (found, *others) if other is not None and self.lower <= other.p <= self.upper
         ]
-        return min(inside, key=lambda other: self._off(u, p, other), default=None)
+        return min(inside, key=lambda other: self._distance_to(u, p, other), default=None)
 
-    def _near(self, u: np.ndarray, found: Solved) -> bool:
+    def _near_guess(self, u: np.ndarray, found: Solved) -> bool:
         """Whether a solution at the guess's parameter is so near to the guess that it may be the same solution.
 
         Near a fold the distance may be as large as the square root of the residual.
         """
-        return self._off(u, found.p, found) <= math.sqrt(SOLUTION.solved)
+        return self._distance_to(u, found.p, found) <= math.sqrt(SOLUTION.solved)
 
     @np.errstate(all="ignore")  # a solution far away may cause overflow
-    def _off(self, u: np.ndarray, p: float, found: Solved) -> float:
+    def _distance_to(self, u: np.ndarray, p: float, found: Solved) -> float:
         """Return the distance of a solution from a guess."""
         return self.norm(self.join(found.u - u, found.p - p))
 

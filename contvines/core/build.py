@@ -69,11 +69,11 @@ def compiler() -> list[str] | None:
     given = shlex.split(os.environ.get("CXX", ""))
     named = [given, *([name] for name in ("c++", "g++", "clang++"))]
     return next(
-        (command for command in named if command and shutil.which(command[0]) and _knows(command)), None
+        (command for command in named if command and shutil.which(command[0]) and _accepts(command)), None
     )
 
 
-def _knows(command: list[str]) -> bool:
+def _accepts(command: list[str]) -> bool:
     """Whether a compiler accepts the flags; old versions do not."""
     done = subprocess.run([*command, *FLAGS, "-fsyntax-only", "-x", "c++", os.devnull], capture_output=True)
     return done.returncode == 0

@@ -73,7 +73,7 @@ def _open(variant: str) -> ctypes.CDLL:
     advice = "run python -m contvines.core.build" if checkout else "install contvines again"
     if not path.exists():
         raise Unusable(f"{path} is missing; {advice}")
-    if not _whole(path):
+    if not _complete(path):
         raise Unusable(f"{path} is cut short; {advice}")
     try:
         found = ctypes.CDLL(str(path))
@@ -86,7 +86,7 @@ def _open(variant: str) -> ctypes.CDLL:
     return found
 
 
-def _whole(path: Path) -> bool:
+def _complete(path: Path) -> bool:
     """Whether an ELF file is as long as its header states, from the table of sections at its end.
 
     The loaders of macOS and Windows check this themselves. That of Linux maps a truncated file, and an access to the missing part kills

@@ -213,7 +213,7 @@ def write_xpp(graph: Graph, path: Path) -> None:
     """
     rows = []
     for number, branch in enumerate(graph.branches.values(), 1):
-        high, low = _ends(branch)
+        high, low = _extremes(branch)
         cycles = branch.description.get("word", "equilibrium") != "equilibrium"
         stable = np.zeros(len(branch), dtype=bool) if branch.stable is None else np.asarray(branch.stable)
         for k, value in enumerate(branch.values):
@@ -222,7 +222,7 @@ def write_xpp(graph: Graph, path: Path) -> None:
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
-def _ends(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
+def _extremes(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
     """Return the largest and the smallest value of the exported state or measure at each point, each of shape (n,)."""
     measures = measures_of(branch)
     names = [name.removeprefix("max ") for name in measures if name.startswith("max ")]

@@ -144,7 +144,7 @@ def _graphml(graph: Graph, path: Path) -> None:
     keys: dict[tuple[str, str, str], ElementTree.Element] = {}
 
     def describe(element: ElementTree.Element, element_kind: str, data: dict[str, Any]) -> None:
-        for name, value in _flat(data).items():
+        for name, value in _scalars(data).items():
             kind = next(kind for sort, kind in _GRAPHML_TYPES if isinstance(value, sort))
             attributes = {"id": f"d{len(keys)}", "for": element_kind, "attr.name": name, "attr.type": kind}
             key = keys.setdefault((element_kind, name, kind), ElementTree.Element("key", attributes))
@@ -168,7 +168,7 @@ def _graphml(graph: Graph, path: Path) -> None:
 _GRAPHML_TYPES = ((bool, "boolean"), (int, "long"), (float, "double"), (str, "string"))
 
 
-def _flat(data: dict[str, Any]) -> dict[str, Any]:
+def _scalars(data: dict[str, Any]) -> dict[str, Any]:
     """Convert values to the scalars of GraphML: lists and dicts become JSON text, None is left out."""
     return {
         str(k): v if isinstance(v, bool | int | float | str) else json_text(v, indent=None)

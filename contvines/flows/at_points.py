@@ -51,12 +51,12 @@ class AtPoints:
         NotEvaluable
             If a value has another shape. Errors of the function itself are not caught.
         """
-        return (self._together if self.many else self._each)(x, parameters, t)
+        return (self._all_at_once if self.many else self._one_by_one)(x, parameters, t)
 
     def _call(self, x: np.ndarray, parameters: Parameters | complex, t: object) -> object:
         return self.f(x, parameters, t) if self.forced else self.f(x, parameters)
 
-    def _each(
+    def _one_by_one(
         self, x: np.ndarray, parameters: Parameters | complex, t: Sequence | np.ndarray | None
     ) -> np.ndarray:
         times = [None] * len(x) if t is None else t
@@ -66,7 +66,9 @@ class AtPoints:
                 raise NotEvaluable(f"the right-hand side has shape {value.shape}; {self.shape} is needed")
         return np.array(found)
 
-    def _together(self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None) -> np.ndarray:
+    def _all_at_once(
+        self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None
+    ) -> np.ndarray:
         return _stacked(self._call(x.T.copy(), parameters, t), len(x), self.shape)
 
     def find(
@@ -77,11 +79,11 @@ class AtPoints:
             return
         x, t = x[:TRIED], None if t is None else t[:TRIED]
         try:
-            single = self._each(x, parameters, t)
+            single = self._one_by_one(x, parameters, t)
         except Exception:  # the points may be outside the domain of f
             return
         try:
-            values = self._together(x, parameters, t)
+            values = self._all_at_once(x, parameters, t)
         except Exception:  # a function for one point may fail in any way when it is called with many
             self.many = False
             return
@@ -176,7 +178,7 @@ class CompiledRates:
         call(len(x), address(x), None if times is None else address(times), address(p), address(out))
         return out
 
-    def _one(
+    def _call_native(
         self,
         call: Callable[..., Any],
         x: np.ndarray,
@@ -195,18 +197,18 @@ class CompiledRates:
         self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
     ) -> np.ndarray:
         """Return f."""
-        return self._one(self.f, x, parameters, t, (len(x),))
+        return self._call_native(self.f, x, parameters, t, (len(x),))
 
     def jacobian(
         self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
     ) -> np.ndarray:
         """Return df/dx."""
-        return self._one(self.dfdx, x, parameters, t, (len(x), len(x)))
+        return self._call_native(self.dfdx, x, parameters, t, (len(x), len(x)))
 
     def derivatives(self, names: list[str]) -> dict[str, Callable[..., np.ndarray]]:
         """Return functions for df/dp by the names of the parameters."""
 
         def slope(k: int) -> Callable[..., np.ndarray]:
-            return lambda x, p, t=None: self._one(self.dfdp, x, p, t, (len(x), len(names)))[:, k]
+            return lambda x, p, t=None: self._call_native(self.dfdp, x, p, t, (len(x), len(names)))[:, k]
 
         return {name: slope(k) for k, name in enumerate(names)}

@@ -151,7 +151,7 @@ class CycleRelatives(CycleMesh):
         the events along the cycle.
         """
         own = self._from_homoclinic(u, work) if self.free_period else np.zeros(0)
-        return np.append(own, self._closest(u, work.along[1])[0]) if len(self.flow.events) else own
+        return np.append(own, self._smallest_events(u, work.along[1])[0]) if len(self.flow.events) else own
 
     def margin_kind(self, j: int) -> str:
         """Return the kind of border of margin j: "homoclinic", or that of an event."""
@@ -215,7 +215,7 @@ class CycleRelatives(CycleMesh):
         return float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
 
     # ------------------------------------------------------------------ events
-    def _closest(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+    def _smallest_events(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
         """The smallest value of each event along the cycle, and its place in units of the period; NaN if an event fails."""
         x, period, widths = self.parts(u, p)
         count = FINER * self.rule.degree
@@ -231,11 +231,11 @@ class CycleRelatives(CycleMesh):
     def crossed(self, u: np.ndarray, p: float) -> str | None:
         """Return the name of an event that the cycle crosses by more than the error of the curve; None if there is none."""
         for k, name in enumerate(self.flow.events.names):
-            if self._closest(u, p)[0][k] < -self._missed(u, p, k):
+            if self._smallest_events(u, p)[0][k] < -self._event_error(u, p, k):
                 return name
         return None
 
-    def _missed(self, u: np.ndarray, p: float, k: int) -> float:
+    def _event_error(self, u: np.ndarray, p: float, k: int) -> float:
         """Error of the smallest value of an event, from the error of the curve between the mesh points."""
         (x, time), sizes = self.touching(u, p, k), self.sizes(self.curve(u)[0])
         touch = self.flow.settings.touch
@@ -246,16 +246,17 @@ class CycleRelatives(CycleMesh):
     def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:
         """Return the state in which the cycle comes closest to event k, and its time."""
         x, period, widths = self.parts(u, p)
-        place = self._closest(u, p)[1][k : k + 1]
+        place = self._smallest_events(u, p)[1][k : k + 1]
         return mesh.evaluate(self.rule, widths, x, place)[0], float(place[0] * period)
 
     def touch_error(self, point: BorderPoint) -> float:
         """Estimate the error of the parameter at which a cycle touches an event."""
         k, along = self.event_at(point), point.tangent
-        missed = self._missed(point.u, float(point.value), k)
+        missed = self._event_error(point.u, float(point.value), k)
         step = self.flow.settings.touch / max(float(np.abs(along[:-1] / self.column_scale).max()), TINY)
         one, other = (
-            self._closest(point.u + s * along[:-1], point.value + s * along[-1])[0][k] for s in (step, -step)
+            self._smallest_events(point.u + s * along[:-1], point.value + s * along[-1])[0][k]
+            for s in (step, -step)
         )
         slope = abs(one - other) / (2.0 * step)
         return float(missed * abs(along[-1]) / slope) if slope > 0.0 else float("inf")

@@ -68,7 +68,7 @@ def cycle_beside(
     if shorter is not None and isinstance(shorter[0], CycleProblem):
         cycles, u = shorter[0], shorter[1]
     orbit = CycleOrbit(cycles, u, p)
-    return _once(flow, orbit, parameters, cycles.rounds) or orbit
+    return _shortest_period(flow, orbit, parameters, cycles.rounds) or orbit
 
 
 def _guess(
@@ -93,7 +93,9 @@ def _guess(
     return np.concatenate([x.reshape(-1), own, widths])
 
 
-def _once(flow: Flow, orbit: CycleOrbit, parameters: ParameterSet, rounds: int) -> CycleOrbit | None:
+def _shortest_period(
+    flow: Flow, orbit: CycleOrbit, parameters: ParameterSet, rounds: int
+) -> CycleOrbit | None:
     """The shorter cycle that an orbit repeats several times; None if there is none.
 
     A motion that spirals towards a cycle may be found to recur after several periods before it is found to recur after one.

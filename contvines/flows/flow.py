@@ -103,7 +103,7 @@ class Flow(ABC):
             self._check_period()
             self._find_mirror()
 
-    def _beside(self, seed: int, width: float) -> tuple[np.ndarray, np.ndarray, float]:
+    def _random_states(self, seed: int, width: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Random states next to the start, random times, and the period."""
         rng, period = np.random.default_rng(seed), self.field.length_of_period(self.values.start)
         x = self.x0 + self.field.lengths * rng.uniform(-width, width, (6, len(self.x0)))
@@ -111,7 +111,7 @@ class Flow(ABC):
 
     def _check_period(self) -> None:
         """Raise an error if f at random states next to the start does not repeat after its period."""
-        p, (x, t, period) = self.values.start, self._beside(6, 0.1)
+        p, (x, t, period) = self.values.start, self._random_states(6, 0.1)
         try:
             with np.errstate(all="ignore"):
                 one, later = self.field(x, p, t), self.field(x, p, t + period)
@@ -127,7 +127,7 @@ class Flow(ABC):
         """Set ``mirror_shifted`` by testing whether f has the mirror at the same time or half a period later; raise an error if neither holds."""
         if self.mirror is None:
             return
-        p, (x, t, period) = self.values.start, self._beside(4, 1.0)
+        p, (x, t, period) = self.values.start, self._random_states(4, 1.0)
         wanted = self.mirrored(self.field(x, p, t)) - self.mirror(np.zeros(len(self.x0)))
         size = TINY + np.abs(wanted).max()
         for self.mirror_shifted in (True, False):

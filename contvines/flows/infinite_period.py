@@ -156,7 +156,7 @@ class Ending:
             values = np.linalg.eigvals(self.problem.field.jacobian(place[None], p)[0])
             if (values.real < 0.0).all() or (values.real > 0.0).all():
                 continue
-            first, last = _run((np.abs(x - place) <= FAR * sizes).all(axis=1), k)
+            first, last = _nodes_around((np.abs(x - place) <= FAR * sizes).all(axis=1), k)
             turns = delays[-1] if last < first else 0.0
             share = float((delays[last] - delays[first] + turns) / delays[-1]) if delays[-1] else np.nan
             same = [i for i, other in enumerate(found) if (np.abs(other.place - place) <= FAR * sizes).all()]
@@ -179,7 +179,7 @@ class Ending:
         return np.append(delays, self.growth)
 
 
-def _run(near: np.ndarray, k: int) -> tuple[int, int]:
+def _nodes_around(near: np.ndarray, k: int) -> tuple[int, int]:
     """The last node before node k and the first one after it, on the closed cycle, that are not near the equilibrium."""
     away = np.flatnonzero(~near)
     if not len(away):

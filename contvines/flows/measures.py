@@ -59,14 +59,14 @@ def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int)
 
 
 @cache
-def _between(degree: int) -> np.ndarray:
+def _interpolation(degree: int) -> np.ndarray:
     """Interpolation matrix from the nodes to equidistant places of an interval."""
     return mesh.rule(degree).interpolation(np.linspace(0.0, 1.0, FINER * degree + 1))
 
 
 def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
     """The largest value of a periodic piecewise polynomial: vertex of the parabola through the largest of many values and its neighbours."""
-    values = (ends @ _between(rule.degree).T)[:, :-1]
+    values = (ends @ _interpolation(rule.degree).T)[:, :-1]
     steps, values = np.repeat(widths / values.shape[1], values.shape[1]), values.reshape(-1)
     k = int(np.argmax(values))
     before, after, middle = steps[k - 1], steps[k], values[k]

@@ -345,15 +345,15 @@ class Settling:
                     repeats -= 1
                 self.index[i], self.mirrored[i] = (
                     k,
-                    not self._along(motion, self.motions[k].curve, self.motions[k].size),
+                    not self._on_curve(motion, self.motions[k].curve, self.motions[k].size),
                 )
                 self._assign(k)
 
     def _same(self, one: Settled, other: Settled) -> bool:
         same_type = one.word == other.word and one.periods == other.periods
-        return same_type and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
+        return same_type and any(self._on_curve(other, curve, one.size) for curve in (one.curve, one.image))
 
-    def _along(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
+    def _on_curve(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
         """Whether a motion lies on the curve of another one of a given size."""
         if curve is None or motion.curve is None:
             return False

@@ -210,7 +210,7 @@ class CycleWork:
         left, right = self.condensed()
         if not self.problem.free_period and self.problem.n_multipliers > 1:
             return multipliers_of(left, right), 0.0
-        found = self._across() if self.problem.free_period else None
+        found = self._maps_across() if self.problem.free_period else None
         missed = 0.0 if found is None else abs(found[1] - 1.0)
         if self.problem.n_multipliers == 1:
             # by Liouville's formula: in stiff parts of the cycle collocation contracts less than the flow
@@ -227,7 +227,7 @@ class CycleWork:
         shares = (self.steps[:, None] * self.problem.rule.weights).reshape(-1)
         return float(shares @ np.trace(self.along[2], axis1=1, axis2=2))
 
-    def _across(self) -> tuple[np.ndarray, float] | None:
+    def _maps_across(self) -> tuple[np.ndarray, float] | None:
         """Maps between the planes across the motion, and the computed trivial multiplier; None if the cycle is an equilibrium."""
         points, p, _, _ = self.along
         field = self.problem.field

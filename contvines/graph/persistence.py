@@ -245,10 +245,10 @@ def check_graph(graph: Graph) -> None:
         check_branch(label, branch)
     for label, point in graph.special.items():
         check_fields(label, point)
-        _own_label(label, point.label)
+        _check_label(label, point.label)
         if point.branch not in graph.branches:
             raise ValueError(f"{label}: its branch {point.branch!r} is missing")
-        _shaped(label, point, u=1, tangent=1, multipliers=1)
+        _check_shapes(label, point, u=1, tangent=1, multipliers=1)
     for switch in graph.switches:
         check_fields("a switch", switch)
         for name, labels in (
@@ -280,10 +280,10 @@ def check_branch(label: str, branch: Branch) -> None:
         If something is wrong; `OtherEquations` if the problem has another number of unknowns.
     """
     check_fields(label, branch)
-    _own_label(label, branch.label)
+    _check_label(label, branch.label)
     for ending in branch.endings:
         check_fields(f"an ending of {label}", ending)
-    _shaped(label, branch, points=2, values=1, tangents=2, multipliers=2, margin=1)
+    _check_shapes(label, branch, points=2, values=1, tangents=2, multipliers=2, margin=1)
     n, size = branch.points.shape
     lengths = [len(a) for a in (branch.values, branch.tangents, branch.multipliers, branch.margin)]
     if branch.stable is not None:
@@ -382,13 +382,13 @@ def _plain(value: object, levels: int = DEEPEST) -> bool:
     return not isinstance(value, int) or _finite_size(value)
 
 
-def _own_label(key: str, label: str) -> None:
+def _check_label(key: str, label: str) -> None:
     """Check that a label is the key of its entry."""
     if key != label:
         raise ValueError(f"{key}: its label is {label!r}")
 
 
-def _shaped(label: str, entry: DataclassInstance, **dimensions: int) -> None:
+def _check_shapes(label: str, entry: DataclassInstance, **dimensions: int) -> None:
     """Check that arrays, by field, are numeric and have the given number of dimensions."""
     for name, dimension in dimensions.items():
         array = getattr(entry, name)

@@ -352,7 +352,7 @@ class Run:
         for branch in graph.branches.values():
             if any(mark == label for _, mark in branch.marks):
                 branch.marks = tuple((i, remaining if mark == label else mark) for i, mark in branch.marks)
-                first, last = (self._tied(ending, label, remaining) for ending in branch.endings)
+                first, last = (self._redirected(ending, label, remaining) for ending in branch.endings)
                 branch.endings = (first, last)
             if branch.seed == label:
                 branch.seed = remaining
@@ -365,7 +365,7 @@ class Run:
             self.connect(switch.point, switch.source, switch.target, switch.note)
         del graph.special[label]
 
-    def _tied(self, ending: Ending, label: str, remaining: str) -> Ending:
+    def _redirected(self, ending: Ending, label: str, remaining: str) -> Ending:
         """Return an ending at a point that has been merged into another one."""
         if ending.point != label:
             return ending

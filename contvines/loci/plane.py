@@ -109,7 +109,7 @@ class Plane(Linearisation):
         def slope(width: float) -> float:
             return _slope([margin(p, q + k * width * high) for k in (-2, -1, 1, 2)]) / (width * high)
 
-        found = {"a": _best(bend), "b": _best(slope)}
+        found = {"a": _steadiest(bend), "b": _steadiest(slope)}
         return found if np.isfinite(list(found.values())).all() else {}
 
 
@@ -122,7 +122,7 @@ def _slope(h: list[float]) -> float:
     return (8.0 * (h[2] - h[1]) - (h[3] - h[0])) / 12.0
 
 
-def _best(value: Callable[[float], float]) -> float:
+def _steadiest(value: Callable[[float], float]) -> float:
     """Difference quotient at the step size at which it changes least from one step size to the next."""
     best, error, before = np.nan, np.inf, np.nan
     for width in SCALING.widest * NARROWER ** np.arange(WIDTHS):

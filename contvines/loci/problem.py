@@ -179,7 +179,7 @@ class LocusProblem(ProblemDefaults):
         self.kernels = TableKernels(native_table("core_loci_table")) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
         options = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
-        own = None if own_kind is None else self._own
+        own = None if own_kind is None else self._own_condition
         self.data = Data(self.first.data, self.second.data, self.first.kernels, *options, own=own)
         if isinstance(kernels, TableKernels) and self.compiled:
             places = memory_of(self.first.data), memory_of(self.second.data)
@@ -188,7 +188,7 @@ class LocusProblem(ProblemDefaults):
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
 
-    def _own(self, u: np.ndarray, p: float, q: float, work: object, row: np.ndarray) -> float:
+    def _own_condition(self, u: np.ndarray, p: float, q: float, work: object, row: np.ndarray) -> float:
         """Evaluate the condition of a user-defined kind at a solution; `work` and `row` are overwritten."""
         first, kind = self.first, self.own_kind
         assert kind is not None and callable(kind.locus)

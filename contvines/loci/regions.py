@@ -306,12 +306,12 @@ def together(
     """Return the simulated motions, and the known ones that the simulation has missed; `size` is a typical size of the unknowns."""
     result = list(simulated)
     for one in continued:
-        if not any(_one(one, other, size) for other in result):
+        if not any(_same_motion(one, other, size) for other in result):
             result.append(one)
     return result
 
 
-def _one(a: dict[str, Any], b: dict[str, Any], unit: float) -> bool:
+def _same_motion(a: dict[str, Any], b: dict[str, Any], unit: float) -> bool:
     if (a["word"], a["periods"]) != (b["word"], b["periods"]):
         return False
     if "u" not in a or "u" not in b:

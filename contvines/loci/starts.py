@@ -263,7 +263,7 @@ def lengthened(problem: CycleProblem, u: np.ndarray, p: float, period: float) ->
     wanted = float(u[problem.period_place])
     while wanted != period:  # compare requested periods: a solved period has rounding errors
         wanted = min(max(period, wanted / LONGER), wanted * LONGER)
-        found = of_period(problem, _waiting(problem, u, p, wanted), p, wanted)
+        found = of_period(problem, _longer_cycle(problem, u, p, wanted), p, wanted)
         if found is None:
             raise ValueError(
                 f"period = {period:.6g}: on the way there no cycle of period {wanted:.6g} is found beyond the one of {u[problem.period_place]:.6g}"
@@ -321,7 +321,7 @@ def limit_of(problem: CycleProblem, u: np.ndarray, p: float) -> InfinitePeriod |
     return infinite_period(problem, SpecialPoint(*fields, found.u, found.tangent, np.zeros(0)))
 
 
-def _waiting(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> np.ndarray:
+def _longer_cycle(problem: CycleProblem, u: np.ndarray, p: float, period: float) -> np.ndarray:
     """A guess for a cycle of another period: the times near its saddles are changed, in proportion to their shares."""
     limit = limit_of(problem, u, p)
     if limit is None or len(limit.saddles) < 2:

@@ -314,7 +314,7 @@ class AlgebraicProblem(CallableProblem):
             new = {"word": kind, "periods": 0, "kind": kind}
             if kind == "equilibrium":
                 new["u"] = [float(x) for x in u]
-            if not any(_one(new, other, size) for other in found):
+            if not any(_same_attractor(new, other, size) for other in found):
                 found.append(new)
         return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
 
@@ -378,7 +378,7 @@ class AlgebraicProblem(CallableProblem):
         } | ({"word": self.pieces.word} if self.pieces.count else {})
 
 
-def _one(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> bool:
+def _same_attractor(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> bool:
     """Whether two entries of `simulated_attractors` are the same attractor."""
     if a["kind"] != b["kind"]:
         return False

@@ -151,9 +151,9 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
             other.functions = other.functions.of(*other._wrapped(other.pieces))
         if parameter != self.parameter:
             other.scales = other.reference = None
-        return other._own()
+        return other._rebind()
 
-    def _own(self) -> Self:
+    def _rebind(self) -> Self:
         """Let a copy's references to the problem refer to the copy; every method that copies calls it."""
         self.data = self
         return self

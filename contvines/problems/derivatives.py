@@ -175,7 +175,7 @@ class Differentiated:
         ValueError
             If f fails, or its result has a wrong shape or is not finite.
         """
-        place = f"at the start {self._where(u, p)}"
+        place = f"at the start {self._place_text(u, p)}"
         try:
             with np.errstate(all="ignore"):
                 given = self._value.raw(u, p)
@@ -193,7 +193,7 @@ class Differentiated:
             raise ValueError(f"{self.name} is not finite {place}")
         return value
 
-    def _where(self, u: np.ndarray, p: float) -> str:
+    def _place_text(self, u: np.ndarray, p: float) -> str:
         return f"{self.start_name} = {np.array2string(u, threshold=6)}, {self.parameters.varying} = {p:.10g}"
 
     def value(self, u: np.ndarray, p: float) -> np.ndarray:

@@ -187,8 +187,8 @@ class MapProblem(CallableProblem):
                 found.append(Symmetry("symmetry-breaking", lambda u: self._mirrored(self._shift_by_half(u))))
         self.symmetries = tuple(found)
 
-    def _own(self) -> MapProblem:
-        super()._own()
+    def _rebind(self) -> MapProblem:
+        super()._rebind()
         self._find_symmetries()
         return self
 
@@ -209,7 +209,7 @@ class MapProblem(CallableProblem):
             other.given_scale = np.tile(self.node_scale, other.cycle)
         if self.scales is not None:
             other.scales = self.scales.head(self.node).tiled(other.cycle)
-        return other._own()
+        return other._rebind()
 
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
         """Return f(x_i) - x_{i+1} without derivatives."""

@@ -281,7 +281,7 @@ def asymmetry(
     states, n = _states(*start, *lengths), len(start[0])
     wanted = [next(states) for _ in range(len(REACHES) + ALIKE)]
 
-    tried, lost = _tried(values, image, wanted)
+    tried, lost = _evaluated_pairs(values, image, wanted)
     if len(lost) > len(tried):
         return Asymmetry(-1, np.nan, np.nan, np.nan, *lost[0])
     if not tried:
@@ -289,7 +289,7 @@ def asymmetry(
     worst = _worst(tried, linear_part(image, n), noise)
     if worst is None or not (mixed and n <= MIXED):
         return worst
-    tried += _tried(values, image, [next(states) for _ in range(n + MORE)])[0]
+    tried += _evaluated_pairs(values, image, [next(states) for _ in range(n + MORE)])[0]
     return None if len(tried) > n and _constant(tried, noise) else worst
 
 
@@ -302,7 +302,7 @@ class Pair(NamedTuple):
     there: np.ndarray
 
 
-def _tried(
+def _evaluated_pairs(
     values: Values, image: Image, states: Sequence[tuple[np.ndarray, float]]
 ) -> tuple[list[Pair], list[tuple[np.ndarray, float]]]:
     """F at states and at their images, and the states at which only one of the two can be evaluated."""

@@ -57,7 +57,7 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
             return function(*arguments, **options)
         except TypeError:
             wrong = next((name for name in options if name not in names), None)
-            absent = _absent(parameters, arguments, options)
+            absent = _missing(parameters, arguments, options)
             if wrong is None and not absent:
                 raise
         if wrong is not None:
@@ -73,7 +73,7 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
     return asked
 
 
-def _absent(
+def _missing(
     parameters: Mapping[str, inspect.Parameter], arguments: Sequence[Any], options: Mapping[str, Any]
 ) -> list[str]:
     """Return the names of required arguments that are missing."""

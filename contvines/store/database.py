@@ -55,7 +55,7 @@ CREATE TABLE array (
 _OBJECTS = "SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"
 
 
-def _objects_of_ours() -> list[tuple[str, str, str, str | None]]:
+def _schema_objects() -> list[tuple[str, str, str, str | None]]:
     """Return type, name, table and SQL definition of each table and index of a .vines file."""
     with closing(sqlite3.connect(":memory:")) as db:
         db.executescript(_SCHEMA)
@@ -239,7 +239,7 @@ class Store:
                 self._version = version
             if not self._kept:
                 self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
-            present = {self._renew(*entry) for entry in entries}
+            present = {self._write_changed(*entry) for entry in entries}
             for place in self._kept.keys() - present:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
                 del self._kept[place]
@@ -247,7 +247,7 @@ class Store:
             if finished and not graph.stopped:  # the journal is not needed any more
                 self._db.execute("DELETE FROM entry WHERE kind = 'journal'")
 
-    def _renew(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:
+    def _write_changed(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:
         """Write an entry of the graph unless it is unchanged (arrays are never changed in place); return its kind and key."""
         scalars, arrays = split(content)
         written = self._kept.get((kind, key))
@@ -391,7 +391,7 @@ class Store:
             If a check fails.
         """
         with self._guard():
-            expected = _objects_of_ours()
+            expected = _schema_objects()
             found = self._db.execute(_OBJECTS).fetchmany(len(expected) + 1)
             if found != expected:
                 names = {name for kind, name, *_ in found if kind == "table"}

@@ -186,7 +186,7 @@ def locked(path: Path, wait: Callable[[], None]) -> Iterator[None]:
     """
     place = path.with_name(f".{path.name}.lock")
     try:
-        handle = _taken(place, wait)
+        handle = _locked(place, wait)
     except OSError:  # nothing can be written here: the run itself will report it
         yield
         return
@@ -201,7 +201,7 @@ def locked(path: Path, wait: Callable[[], None]) -> Iterator[None]:
                 place.unlink()
 
 
-def _taken(place: Path, wait: Callable[[], None]) -> int:
+def _locked(place: Path, wait: Callable[[], None]) -> int:
     """Return an open handle of the lock file, locked; it is certain that the file still has this name."""
     while True:
         handle = os.open(place, os.O_RDWR | os.O_CREAT, 0o666)

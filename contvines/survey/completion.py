@@ -89,7 +89,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     limits = Limits.of(None, settings.get("bounds"), next(iter(graph.branches.values())).attached)
     run = run_on(graph, int(settings.get("depth", 0)), bool(settings.get("virtual", False)), limits)
     for p in np.linspace(low, high, CLOSED):
-        _add(run, population.closed(float(p)), float(p))
+        _add_untraced(run, population.closed(float(p)), float(p))
     found_now: list[Counted] = []
     before, untraced = set(graph.branches), 0
 
@@ -141,7 +141,7 @@ def _size(graph: Graph, before: Collection[str]) -> int:
     return sum(b.points.size for label, b in graph.branches.items() if label not in before)
 
 
-def _add(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> None:
+def _add_untraced(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> None:
     """Trace those of some motions at `p` that lie on no branch yet."""
     for problem, u in motions:
         if run.register.find(problem, u, p, True) is None:

@@ -147,7 +147,7 @@ def _axis(name: str, given: object) -> np.ndarray | None:
         if "values" in given:
             given = given["values"]
         elif "count" in given:
-            low, high = _two(f"{place}.within", given.get("within"))
+            low, high = _pair(f"{place}.within", given.get("within"))
             count = given["count"]
             if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
                 raise PlanError(f"{place}.count = {count!r}: expected a whole number from 1 to {MOST}")
@@ -168,7 +168,7 @@ def _distribution(name: str, given: Mapping[str, object]) -> Law:
 
     place = f"[survey] vary.{name}"
     if "normal" in given:
-        mean, deviation = _two(f"{place}.normal", given["normal"])
+        mean, deviation = _pair(f"{place}.normal", given["normal"])
         if not deviation > 0.0:
             raise PlanError(
                 f"{place}.normal = [{mean:g}, {deviation:g}]: expected [mean, deviation], the second above 0"
@@ -183,7 +183,7 @@ def _distribution(name: str, given: Mapping[str, object]) -> Law:
 
 
 def _ends(place: str, key: str, given: Mapping[str, object]) -> tuple[float, float]:
-    low, high = _two(f"{place}.{key}", given.get(key))
+    low, high = _pair(f"{place}.{key}", given.get(key))
     if not low < high:
         raise PlanError(f"{place}.{key} = [{low:g}, {high:g}]: expected low < high")
     return low, high
@@ -205,7 +205,7 @@ def _drawn(uncertain: dict[str, Law], sampling: str, samples: int, seed: int) ->
     return {name: np.asarray(law.ppf(places[:, i])) for i, (name, law) in enumerate(uncertain.items())}
 
 
-def _two(place: str, value: object) -> tuple[float, float]:
+def _pair(place: str, value: object) -> tuple[float, float]:
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise PlanError(f"{place} = {value!r}: expected two numbers")
     return _number(f"{place}[0]", value[0]), _number(f"{place}[1]", value[1])

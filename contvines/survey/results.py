@@ -346,7 +346,7 @@ def read(path: Path) -> Dataset:
         raise PlanError(f"{path}: there is no such file") from None
     except OSError as error:
         raise PlanError(f"{path}: this file cannot be read ({error.strerror})") from None
-    if not _sound(content):
+    if not _digest_matches(content):
         raise PlanError(
             f"{path}: this file is damaged, it has changed since it was written; move it away, and the survey makes it again"
         )
@@ -360,7 +360,7 @@ def read(path: Path) -> Dataset:
     return data
 
 
-def _sound(content: bytes) -> bool:
+def _digest_matches(content: bytes) -> bool:
     """Whether the digest in a file matches its content; true for files of format 1, which have none."""
     before, mark, after = content.partition(MARK)
     if not mark:

@@ -227,7 +227,7 @@ class Attractor:
         return self.found.seed(problem)
 
     @cached_property
-    def _reading(self) -> tuple[bool, int]:
+    def _canonical_reading(self) -> tuple[bool, int]:
         """Whether the canonical spelling is that of the mirror image, and the event at which it begins."""
         word = self.found.word
         if not len(word) or word.alphabet.alone is None:  # words of declared machines keep their order
@@ -240,7 +240,7 @@ class Attractor:
         """Nodes for a study's `guess`, in the order of the canonical spelling; None without a word."""
         if self.orbit is None:
             return None
-        mirrored, place = self._reading
+        mirrored, place = self._canonical_reading
         return (self.orbit.mirror() if mirrored else self.orbit).rotate(place).nodes
 
     @property
@@ -249,7 +249,7 @@ class Attractor:
         run, first = self.trajectory, self.first
         ordinates = np.array(run.shown(first))
         if self.orbit is not None and self.model.forced and len(ordinates) > 1:
-            began = self.orbit.nodes[self._reading[1], 0] - REPLAYING.close
+            began = self.orbit.nodes[self._canonical_reading[1], 0] - REPLAYING.close
             times = run.clocks[1:][first:][run.hits[first:]] - began
             ordinates = ordinates[np.argsort(times % (2.0 * np.pi * self.periods))]
         return ordinates.tolist()

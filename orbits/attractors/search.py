@@ -297,13 +297,13 @@ def plainest(orbit: Orbit) -> Orbit:
     word = orbit.word
     if len(word) > 1:
         places = [i for i in range(len(word)) if word.letter(i).kind != SLIP] or [0]
-        orbit = orbit.rotate(min(places, key=lambda i: _writing(orbit, i)))
+        orbit = orbit.rotate(min(places, key=lambda i: _spelling_key(orbit, i)))
     if orbit.forced and len(word):  # an orbit without events begins at phase zero
         orbit.nodes[:, 0] -= TWO_PI * np.floor(orbit.nodes[0, 0] / TWO_PI)
     return orbit
 
 
-def _writing(orbit: Orbit, place: int) -> tuple[int, str | tuple[str, ...], float]:
+def _spelling_key(orbit: Orbit, place: int) -> tuple[int, str | tuple[str, ...], float]:
     """Sort key of a spelling: length and text of the word from an event on, then its phase."""
     word, phase = orbit.word.rotate(place), float(orbit.nodes[place, 0]) % TWO_PI
     return (len(word.text), word.text, phase) if len(word) <= PLAIN else (0, word.events, phase)

@@ -94,7 +94,7 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
         kind = "persistence" if persistence else "nonsmooth fold"
         seeds.append(Seed(*simplest, "border", f"{note}: {kind}", persistence))
         if simplest is not found:
-            seeds.extend(_onwards(simplest.problem, simplest.u, p))
+            seeds.extend(_simpler_continuations(simplest.problem, simplest.u, p))
         break
     if (every or not seeds) and len(problem.word):
         seeds += escapes(border, [placed(problem, *near, index) for near in nearby if near is not None])
@@ -118,7 +118,7 @@ def _simplest(found: BranchAtBorder, orbit: Orbit) -> BranchAtBorder:
     return BranchAtBorder(smallest, smallest.reduce(root.nodes), found.p, None)
 
 
-def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
+def _simpler_continuations(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     """Continuation of the simpler orbits (more symmetry, shorter period) on whose border a branch ends."""
     at_border, residual = solved_at(problem.equations, u, p)
     if not residual < SOLVING.residual:
@@ -305,7 +305,7 @@ def dead_end(problem: CycleProblem, point: BorderPoint) -> str:
             "and no finite word describes"
         )
     near = _nearly_vanishing(orbit)
-    return near or "; ".join([UNKNOWN.format(contact=contact), *_goes_to(problem, orbit, p)])
+    return near or "; ".join([UNKNOWN.format(contact=contact), *_simulated_outcomes(problem, orbit, p)])
 
 
 def _contact(orbit: Orbit, index: int) -> str:
@@ -348,7 +348,7 @@ def _nearly_vanishing(orbit: Orbit) -> str:
     return ""
 
 
-def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
+def _simulated_outcomes(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
     """Descriptions of the motions that a simulation reaches from the border orbit, above and below the border."""
     outcomes = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):

@@ -103,7 +103,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
     speed = -decay * np.sin(fast * t) / fast
     bare_time = -math.log(1.0 - NINE_TENTHS) / (2.0 * rate) if rate > 0.0 else math.nan
     impacts, friction, damper = (float(x) for x in parts)
-    decay_time = _when(t, e, 1.0 - NINE_TENTHS)
+    decay_time = _time_at_level(t, e, 1.0 - NINE_TENTHS)
     return Decay(t, e, q * q + speed * speed, impacts, friction, damper, decay_time, bare_time)
 
 
@@ -145,7 +145,7 @@ def _energy(state: np.ndarray, eps: float) -> float:
     return 0.5 * (q1 * q1 + q1_rate * q1_rate + eps * q2_rate * q2_rate)
 
 
-def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
+def _time_at_level(times: np.ndarray, energy: np.ndarray, level: float) -> float:
     """Return the time at which the energy first falls to `level`, with geometric interpolation between samples; nan if it does not."""
     below = np.flatnonzero(energy <= level)
     if not below.size:

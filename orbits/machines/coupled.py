@@ -211,7 +211,7 @@ class Coupled(Model):
 
         reading = Word.parse(word, frictionless=self.frictionless(params))
         if reading.modes[0] != (-1 if word == "LR" else 1):
-            nodes = _begun_later(nodes)
+            nodes = _rotated(nodes)
         return Orbit(self, reading, 1, nodes, params)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
@@ -221,7 +221,7 @@ class Coupled(Model):
         events = "".join(word.events)
         if events in ("LR", "RL"):
             for nodes in coupled_orbits.symmetric_nodes(params):
-                yield nodes if events == "LR" else _begun_later(nodes)
+                yield nodes if events == "LR" else _rotated(nodes)
         elif events == "tt":
             nodes = coupled_orbits.sliding_nodes(params, int(word.mode_codes[0]))
             if nodes is not None:
@@ -236,7 +236,7 @@ class Coupled(Model):
         return coupled_orbits.stuck_frequencies(self.vector(parameters))
 
 
-def _begun_later(nodes: np.ndarray) -> np.ndarray:
+def _rotated(nodes: np.ndarray) -> np.ndarray:
     """Return two nodes, beginning with the second one."""
     return np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
 

@@ -144,7 +144,7 @@ def structure(
         raise ParameterError(
             f"frequency = {frequency:g}, accuracy = {accuracy:g}: expected a frequency above 0 and an accuracy from 0 to 1"
         )
-    return _made(
+    return _machine_from(
         reduced(matrices[0], matrices[1], matrices[2], coordinates, highest or MEANT * frequency, accuracy),
         elements,
         frequency,
@@ -157,7 +157,7 @@ def structure_again(settings: Mapping[str, Any]) -> Structure:
     m, c, k = (np.array(data[name]) for name in MATRICES)
     small = Reduced(m, c, k, tuple(data["kept"]), data["size"], data["error"], data["highest"])
     values = {key: value for key, value in settings.items() if key not in ("name", "structure")}
-    return _made(small, data["elements"], values.get("frequency", 1.0), values)
+    return _machine_from(small, data["elements"], values.get("frequency", 1.0), values)
 
 
 def _element(kind: str, place: int, given: object, size: int) -> dict[str, float]:
@@ -354,7 +354,7 @@ def _sum(factors: np.ndarray, values: Sequence[Plain]) -> Plain:
     return total
 
 
-def _made(
+def _machine_from(
     small: Reduced,
     elements: dict[str, list[dict[str, float]]],
     frequency: float,

@@ -205,12 +205,12 @@ def returning_cycles(
                 np.abs((np.array(points[1:]).reshape(-1, len(x)) - x) / size).max(axis=1) < SIMULATING.same
             )
             prime = int(np.argmax(repeats)) + 1 if repeats.any() else count
-            found = _cycle_through(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2)
+            found = _cycle_at(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2)
             if found is not None:
                 yield found
 
 
-def _cycle_through(simulator: Simulator, x: np.ndarray, periods: int) -> Orbit | None:
+def _cycle_at(simulator: Simulator, x: np.ndarray, periods: int) -> Orbit | None:
     """The cycle through a point as an orbit; None if it cannot be continued."""
     try:
         simulator.start(x)

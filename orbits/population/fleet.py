@@ -156,10 +156,10 @@ class Fleet:
         self.simulator.go_on(batch.states[i])
         self._begun = self.simulator.time
         if outcome == Outcome.SETTLED:
-            return self._found(self._looked_at(AGAIN, self.longest, 1), i)
+            return self._found(self._attractor_reached(AGAIN, self.longest, 1), i)
         return self._unsettled(i, batch)
 
-    def _looked_at(self, transient: float, longest: int, patience: int) -> Attractor:
+    def _attractor_reached(self, transient: float, longest: int, patience: int) -> Attractor:
         """Attractor reached from the simulator's state."""
         self.work += SOLVED
         return attracted(self.simulator, transient, longest, SIMULATING.one, patience)
@@ -187,23 +187,23 @@ class Fleet:
             if kind == "chaotic" and followed >= needed:
                 break
             looks, start_time = looks + 1, self.simulator.time
-            found = self._looked_at(200.0, self.longest, 2)
+            found = self._attractor_reached(200.0, self.longest, 2)
             if found.recurrent:
                 if lives:
-                    self._longer(batch, similar, lives)
+                    self._simulate_on(batch, similar, lives)
                 return self._found(found, i)
             self.simulator.skip(LATE)
             followed += self.simulator.time - start_time
         if kind != "chaotic":  # again, nearer to the attractor
             kind, exponent, error = self._growth()
         if kind == "slow":  # neighbours converge to it: it may be a long cycle
-            found = self._looked_at(0.0, RARE, 1)
+            found = self._attractor_reached(0.0, RARE, 1)
             if found.recurrent:
                 return self._found(found, i)
         state = batch.states[i].copy()
         return self._assign(similar, Motion(kind, exponent=exponent, error=error, state=state))
 
-    def _longer(self, batch: Batch, similar: np.ndarray, periods: float) -> None:
+    def _simulate_on(self, batch: Batch, similar: np.ndarray, periods: float) -> None:
         """Simulate chaotic motions on, after one of them has settled."""
         before = float(batch.lasted.sum())
         self.simulator.settle_longer(batch, similar, self.longest, periods, self.workers)

@@ -328,7 +328,7 @@ def _iterate(T, turns):
     return True
 
 
-def _apart(x, xp, y, yp):
+def _difference(x, xp, y, yp):
     """|x 2^xp - conj(y) 2^yp| and |Im x| 2^xp + |Im y| 2^yp, both over 2^max(xp, yp)."""
     top = max(xp, yp)
     a = x * math.ldexp(1.0, max(xp - top, -1000))
@@ -359,7 +359,7 @@ def _diagonal(T, re, im, value, power):
         mate, closest = -1, 0.5
         for j in range(k + 1, n):
             if power[j].imag == 0.0:
-                distance, width = _apart(value[k], int(power[k].real), value[j], int(power[j].real))
+                distance, width = _difference(value[k], int(power[k].real), value[j], int(power[j].real))
                 if width > 0.0 and distance <= closest * width:
                     mate, closest = j, distance / width
         raised = int(power[k].real)

@@ -161,7 +161,7 @@ def iterate(
     for k in range(2):
         if not np.any(sides[:, k]):
             continue
-        guess = _like_before(tangent, border, sides) if k == 1 else None
+        guess = _scaled_tangent(tangent, border, sides) if k == 1 else None
         for matrix.shift in (0.0, LINEAR.aside):
             found, gap = matrix.solve(sides[:, k], guess, LINEAR.iterated)
             if solved(gap, matrix.growth):
@@ -173,7 +173,7 @@ def iterate(
     return result, matrix
 
 
-def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarray) -> np.ndarray | None:
+def _scaled_tangent(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarray) -> np.ndarray | None:
     """The last tangent, scaled so that it fulfils the border equation; None if that is impossible."""
     if tangent is None or not (sides[:-1, 1] == 0.0).all():
         return None

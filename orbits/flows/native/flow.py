@@ -230,7 +230,7 @@ class NativeFlow(Flow[Model]):
         left, right = motion.model.walls(motion.params)
         touch = inner[np.argmin(np.minimum(left - path[inner, 0], path[inner, 0] - right))]
         wall = self._nearest_wall(motion, path[touch, 0])
-        return Vanishing(site, wall, self._touch(motion, float(ahead[touch]), path[touch]))
+        return Vanishing(site, wall, self._node_inside(motion, float(ahead[touch]), path[touch]))
 
     def _slowest(self, motion: Motion[Model], place: int) -> tuple[float, np.ndarray]:
         """Return clock and node entries of the point in a flight at which the speed of sliding (mode times w') is smallest."""
@@ -245,9 +245,9 @@ class NativeFlow(Flow[Model]):
             k = int((mode * self._flight(motion, place, ahead)[:, 1]).argmin())
             low, high = float(ahead[max(k - 1, 0)]), float(ahead[min(k + 1, 40)])
         clock = 0.5 * (low + high)
-        return self._touch(motion, clock, self._flight(motion, place, np.array([clock]))[0])
+        return self._node_inside(motion, clock, self._flight(motion, place, np.array([clock]))[0])
 
-    def _touch(self, motion: Motion[Model], ahead: float, row: np.ndarray) -> tuple[float, np.ndarray]:
+    def _node_inside(self, motion: Motion[Model], ahead: float, row: np.ndarray) -> tuple[float, np.ndarray]:
         """Return clock and node entries, w (, v, v'), of a point in a flight, like a node away from the walls."""
         return ahead, row[[0, 2, 3]][: motion.nodes.shape[1] - 1]
 

@@ -176,7 +176,7 @@ class Pieces(Equations[Machine]):
         ]
         resting = self._resting(stuck)
         self.trivial = len(self.loose) + len(stuck) + len(resting)
-        self.still = () if symmetric else self._still(stuck)
+        self.still = () if symmetric else self._stuck_closures(stuck)
         self.resting = () if symmetric else resting
         self.comes_back = not any(map(self._slips_one_way, range(self.contacts)))
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
@@ -187,7 +187,7 @@ class Pieces(Equations[Machine]):
         self.minus[1:, 1:] = -self.identity
         self._assign()
 
-    def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Values], ...]:
+    def _stuck_closures(self, frictions: Sequence[int]) -> tuple[tuple[int, Values], ...]:
         """Return, for each friction that sticks for ever, the state whose closure its velocity replaces, and the compiled velocity."""
         e, found, taken = self.model.equations, [], set(self.loose)
         for j in frictions:

@@ -47,7 +47,7 @@ class PageChanged(OSError):
 def page_changed(settings: dict[str, Any]) -> str:
     """Return a sentence if the file of a stored machine is missing or has changed; empty if it is unchanged."""
     path = Path(settings["page"])
-    if _comes_along(settings):
+    if _is_packaged(settings):
         return ""
     if not settings["page"]:
         return "the machine was declared at a prompt, so that it cannot be found again: declare it in a file"
@@ -63,7 +63,7 @@ def page_changed(settings: dict[str, Any]) -> str:
     return ""
 
 
-def _comes_along(settings: dict[str, Any]) -> bool:
+def _is_packaged(settings: dict[str, Any]) -> bool:
     """Return whether the machine is one of the package's own, which is identified by its name even if its file has changed."""
     path = Path(settings["page"])
     return settings["object"] in PAGES and path.parts[-3:] == (
@@ -93,7 +93,7 @@ def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
         If the machine file is missing or has changed.
     """
     machine = loaded(settings)
-    if machine is None and _comes_along(settings):
+    if machine is None and _is_packaged(settings):
         found = page_machine(settings["object"])
         machine = found if isinstance(found, Machine) else None
     if machine is not None or not trust:

@@ -67,7 +67,7 @@ class Possible:
         self.equations, self.units = equations, units
         self.names = [name.removeprefix("p_") for name in equations.layout.numbers if name.startswith("p_")]
         self.demands = [
-            *_rooms(equations, units),
+            *_gap_demands(equations, units),
             *_masses(equations),
             *_rates(equations),
             *_contacts(equations),
@@ -116,7 +116,7 @@ class Possible:
         return f"{values_text} {'are' if len(blamed) > 1 else 'is'} out of range: {demand.rule}"
 
 
-def _rooms(e: Equations, units: Mapping[str, str]) -> list[Demand]:
+def _gap_demands(e: Equations, units: Mapping[str, str]) -> list[Demand]:
     """Return demands on two facing walls: a weighted sum of their gaps is the space between them, wherever the bodies are."""
     slopes: dict[int, list[float]] = {}
     for j, gap in e.gap.items():

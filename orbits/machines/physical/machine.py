@@ -114,14 +114,14 @@ def _assembled(
     basis = Basis(chosen, (*base.parameter_names, *tables(base).scales), sizes)
     amounts = np.array([counted[q.name][0] for q in chosen])
     numbers = dict(zip(basis.numbers, products(basis.law, amounts).tolist()))
-    machine = _made(base, numbers, basis, amounts, units_given, unusual, contact_time)
+    machine = _machine_from(base, numbers, basis, amounts, units_given, unusual, contact_time)
     if not unusual:
         texts = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
         check_ratios(numbers, texts)
     return machine
 
 
-def _made(
+def _machine_from(
     base: type[Model],
     numbers: Mapping[str, float],
     basis: Basis,
@@ -329,7 +329,9 @@ class Physical(Model):
         """Return the same machine with other values of its dimensionless numbers."""
         numbers = self.named(self.vector(values))
         counts = self.basis.amounts_of(np.array([*numbers.values()]))
-        return _made(self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time)
+        return _machine_from(
+            self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time
+        )
 
     def __reduce__(self) -> tuple[Callable, tuple]:
         return physical_again, (self.settings(),)
