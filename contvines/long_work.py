@@ -159,7 +159,8 @@ def _interrupted(number: int, frame: FrameType | None) -> None:
 
 
 Tell = Callable[[Any], None]
-FIRST, AGAIN = 20.0, 60.0  # seconds before the first line of progress in a log, and between further lines
+# seconds before the first line of progress in a log, and between further lines
+FIRST_WAIT, INTERVAL = 20.0, 60.0
 
 
 @contextmanager
@@ -233,14 +234,14 @@ def _notebook(say: Callable[[Any], str] = as_text) -> Iterator[Tell]:
 
 
 class _Log:
-    """Progress in a log: a line on stderr after `FIRST` seconds, then every `AGAIN` seconds."""
+    """Progress in a log: a line on stderr after `FIRST_WAIT` seconds, then every `INTERVAL` seconds."""
 
     def __init__(self, say: Callable[[Any], str] = as_text) -> None:
-        self.due, self.say = monotonic() + FIRST, say
+        self.due, self.say = monotonic() + FIRST_WAIT, say
 
     def __call__(self, state: object) -> None:
         if monotonic() >= self.due:
-            self.due = monotonic() + AGAIN
+            self.due = monotonic() + INTERVAL
             print(f"contvines: {self.say(state)}", file=sys.stderr, flush=True)
 
 

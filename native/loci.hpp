@@ -8,7 +8,7 @@ namespace loci {
 enum Condition { FOLD, FLIP, MARGIN, PAIR, BRANCH };
 enum SolutionRow { ALONG, NULL_VECTOR, TESTED, LEFT, SPARE };
 enum BorderRow { B, C, FLIP_B, FLIP_C };
-enum StateEntry { KNOWN, SIGN, ANGLE, SERVED };
+enum StateEntry { VALID, SIGN, ANGLE, AGE };
 constexpr double STEP = 1e-7, STILL = 1e-7, LONGEST = 4.0, TURNED = 1.02;
 
 // See LocusData and Work in contvines/loci/problem.py.
@@ -101,7 +101,7 @@ inline void slopes_along(const Data& d, const Work& w, const double* direction, 
 // Whether directions and slopes are those of the last call, because the point has hardly moved; keeps the point if not.
 inline bool frozen(const Work& w, const double* U, double q) {
     const whole last = w.last;
-    bool still = w.state[KNOWN] > 0.0 && fabs(q - w.frozen[last]) < STILL * larger(w.scales[last], fabs(q));
+    bool still = w.state[VALID] > 0.0 && fabs(q - w.frozen[last]) < STILL * larger(w.scales[last], fabs(q));
     for (whole i = 0; i < last; i++)
         if (still && !(fabs(U[i] - w.frozen[i]) < STILL * larger(w.scales[i], fabs(U[i])))) still = false;
     if (still) return true;
@@ -166,7 +166,7 @@ inline void span(const Data& d, const Work& w) {
         direction[n] = 0.0, direction[n + 1] = null[n], direction[last] = 0.0;
     } else {
         for (whole i = 0; i < n; i++) one[i] *= w.scales[n], two[i] *= w.scales[last];
-        if (w.state[KNOWN] >= 0.0) {
+        if (w.state[VALID] >= 0.0) {
             turn(w);
             rotate(w, w.state[ANGLE]);
         } else {  // any row, then the one that belongs to this place
@@ -181,7 +181,7 @@ inline void span(const Data& d, const Work& w) {
         sine_cosine(w.state[ANGLE], s, c);
         w.direction(2)[n] -= s * w.scales[n], w.direction(2)[last] += c * w.scales[last];
     }
-    w.state[KNOWN] = 0.0;
+    w.state[VALID] = 0.0;
 }
 // Direction 0: what makes up for the residuals of F; returns the sign of the elimination.
 inline double particular(const Data& d, const Work& w) {
@@ -208,7 +208,7 @@ inline double linearise(void* data, const double* U, double q, void* work) {
     const double p = d.unit * U[n];
     const bool still = frozen(w, U, q);
     if (!still) {
-        w.state[KNOWN] = smaller(w.state[KNOWN], 0.0);
+        w.state[VALID] = smaller(w.state[VALID], 0.0);
         t.assign(d.second, d.first, p);
         if (!(t.linearise(d.second, U, q, w.base) < continuation::BEYOND)) return HUGE_VAL;
         for (whole i = 0; i < n; i++) w.columns[n + i] = w.base_Q[i];
@@ -281,12 +281,12 @@ inline double bordered(void* data, void* work, const double* border, double targ
     const whole width = count > 2 ? count : 2;  // of `steep`
     for (whole column = 0; column < total; column++) {
         double *steep = w.steep + column * width, along = 0.0;
-        if (w.state[KNOWN] < 1.0) slopes_along(d, w, w.direction(1 + column), steep);
+        if (w.state[VALID] < 1.0) slopes_along(d, w, w.direction(1 + column), steep);
         for (whole k = 0; k < count; k++) small[5 * k + column] = steep[k];
         for (whole i = 0; i <= last; i++) along += border[i] * w.direction(1 + column)[i];
         small[5 * count + column] = along;
     }
-    w.state[KNOWN] = 1.0;
+    w.state[VALID] = 1.0;
     for (whole i = 0; i < total; i++)
         for (whole column = total; column < 3; column++) small[5 * i + column] = 0.0;
     double sign = w.state[SIGN] * close(small, total);
@@ -322,9 +322,9 @@ inline void renew(const Data& d, const Work& w, double* b, double* c, const doub
 inline bool worn(const Work& w, const double* null) {
     double size = 0.0;
     for (whole i = 0; i < w.n; i++) size += (null[i] / w.scales[i]) * (null[i] / w.scales[i]);
-    w.state[SERVED] += 1.0;
-    if (w.state[SERVED] < LONGEST && size < TURNED * TURNED) return false;
-    w.state[SERVED] = 0.0;
+    w.state[AGE] += 1.0;
+    if (w.state[AGE] < LONGEST && size < TURNED * TURNED) return false;
+    w.state[AGE] = 0.0;
     return true;
 }
 // Multipliers and margins of the problem, then of the locus: p within its bounds, and the pair still a pair.
@@ -333,7 +333,7 @@ inline void inspect(void* data, const double* U, double q, void* work, double* r
     const Work& w = *static_cast<Work*>(work);
     const Table& t = *d.table;
     if ((d.kind == FOLD || d.kind == BRANCH || d.kind == FLIP) && worn(w, w.solution(TESTED))) {
-        w.state[KNOWN] = smaller(w.state[KNOWN], 0.0);  // slopes belong to the borders
+        w.state[VALID] = smaller(w.state[VALID], 0.0);  // slopes belong to the borders
         if (d.kind != FLIP) renew(d, w, w.border(B), w.border(C), w.solution(TESTED));
         else {
             t.flip(d.first, w.base, -1.0);

@@ -9,7 +9,7 @@ namespace continuation {
 struct Metric { double of_unknowns, of_parameter; };
 
 // `SolutionSettings` in contvines/continuation/settings.py, in their order.
-struct Solution { double rounding, small, predicted, stalled, solved, huge, left, jump, told, cancels; };
+struct Solution { double rounding, small, predicted, stalled, solved, huge, left, jump, moved, cancels; };
 
 // What all calls about one problem have in common. `Engine` in contvines/continuation/engine.py fills it.
 struct Frame {

@@ -20,7 +20,7 @@ from .locate import Segment
 from .scan import Scan, Spectra, balance, parabola_dips, sizes_by_sort, spectra
 
 PLACES, ZOOMS = np.linspace(0.0, 1.0, 9), 8  # positions at which a kink is sought; number of zooms towards it
-AHEAD = 1.5  # a straight line continued into a segment must reach zero within this many of its lengths
+LINE_REACH = 1.5  # a straight line continued into a segment must reach zero within this many of its lengths
 EDGE = 0.9  # the same for the first and last segment of a chunk, which have a neighbour on one side only
 
 
@@ -142,7 +142,7 @@ def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np
         back = np.where(changes > 0.0, distances[:-1] / changes, np.inf) * lengths
     # the first and the last segment of a chunk have one neighbour only: its line must reach zero well inside
     before, behind = np.append(np.inf, ahead[:-1]) / lengths, np.append(back[1:], np.inf) / lengths
-    inside = (before < AHEAD) & (behind < AHEAD)
+    inside = (before < LINE_REACH) & (behind < LINE_REACH)
     if len(lengths) > 1:
         inside[0], inside[-1] = behind[0] < EDGE, before[-1] < EDGE
     return (signs[:-1] == signs[1:]) & inside

@@ -47,9 +47,9 @@ LEAST = 0.01  # smallest step along the family
 # distance of a rotation number from n/q, times q^2, below which motions lock; largest q
 LOCKED, PERIODS = 0.05, 40
 # distance outside the circle, relative to its radius, at which motions are tested: if they do not return, there is no larger circle
-OUTWARDS = 0.1
+OUTSIDE = 0.1
 # a circle ends near another cycle if its rotation number is below this part of that at its birth
-LINGERS = 0.5
+SLOW_ROTATION = 0.5
 
 Sections = Callable[[float], Section]
 
@@ -295,7 +295,7 @@ class Family:
     def _broken(self, last: Curve, torn: bool) -> str:
         """Sentence why circles end after the last one."""
         at, at_birth = f"near {self.name} = {last.value:.8g}", self.birth.rotation
-        if abs(last.rotation) < LINGERS * abs(at_birth):
+        if abs(last.rotation) < SLOW_ROTATION * abs(at_birth):
             return (
                 f"ends {at}, where its turns take {abs(at_birth / last.rotation):.3g} times as long as at its birth: "
                 "the circle comes close to another cycle, beside which the motion lingers"
@@ -306,7 +306,7 @@ class Family:
         )
         if n and abs(last.rotation * q - n) * q < LOCKED:
             return f"the circle breaks {at}: its rotation {last.rotation:.5g} comes close to {n}/{q}, at which motions lock"
-        outside = last.points + OUTWARDS * (last.points - last.points.mean(axis=0))
+        outside = last.points + OUTSIDE * (last.points - last.points.mean(axis=0))
         if not np.isfinite([self.section(last.value).step(x) for x in outside]).all():
             return (
                 f"ends {at}: motions from points a little outside of the circle do not return, or the points are impossible states (at the section, "

@@ -26,7 +26,7 @@ from .settings import ATLAS
 RESOLVED = 0.01
 TURN = 0.5 * (np.sqrt(5.0) - 1.0)  # increment of the additive recurrence in `scattered`
 # distances beyond the end of a stable stretch at which the motion is followed, relative to the stretch's width:
-PAST = 0.01  # just beyond the end;
+JUST_BEYOND = 0.01  # just beyond the end;
 # beyond a cascade of doublings, which is over after 0.27 of the stretch before it (Feigenbaum's 1 / (4.669 - 1));
 BEYOND_CASCADE = 1.0
 FARTHER = 4.0  # relative to the largest distance, if all motions there settle too slowly to be recognised
@@ -175,7 +175,9 @@ class Handover:
         """Simulate just beyond an end, from starts to either side of the motion at the end; return the motions reached."""
         self.done.add(end.key)
         low, high = self.run.graph.within
-        near, far = (min(part * end.width, ATLAS.farthest * (high - low)) for part in (PAST, BEYOND_CASCADE))
+        near, far = (
+            min(part * end.width, ATLAS.farthest * (high - low)) for part in (JUST_BEYOND, BEYOND_CASCADE)
+        )
         found: list[Counted] = []
         for distance in dict.fromkeys((near, float(np.sqrt(near * far)), far, FARTHER * far)):
             if distance not in (near, far) and any(counted.attractor.kind != "slow" for counted in found):

@@ -172,10 +172,10 @@ def tell_choice(
     study: Study, text: str, covered: float | None, found: Survey, json_: bool, quiet: bool, plot: Path | None
 ) -> None:
     """Print and draw the choice with its other outcomes; `covered` is `least` of `choose`, by default that of surveys."""
-    from ..survey.outcomes import KNOWN
+    from ..survey.outcomes import LEAST_SHARE
     from .plot import compared_text, peaks_compared
 
-    goal, least = read_goal(text), KNOWN if covered is None else covered
+    goal, least = read_goal(text), LEAST_SHARE if covered is None else covered
     outcome = goal.outcome
     choice, (_, model) = choose(study, text, least, found), plan_and_machine(study)
     units = units_of(study, model)

@@ -21,7 +21,7 @@ from ..shared.motions import modulation_of
 from ..shared.numbers import figures
 from ..survey.outcomes import peak, stretches
 from ..survey.plan import Plan
-from .recommendation import AGREES, LOADS, MET, Curve, Start
+from .recommendation import AGREES, LOADS, MOTION_KINDS, Curve, Start
 from .study_data import Sort, Study
 from .survey_study import asked_of
 
@@ -46,7 +46,7 @@ SWEPT = 25  # number of simulated values, instead of a diagram, for a machine wh
 # default range of the values, relative to the largest clearance of the theory
 SPREAD = (0.1, 1.25)
 # the simulation is refined this many steps to either side of the largest response, with this number of values
-ABOUT, FINE = 8, 321
+FINE_STEPS, FINE = 8, 321
 ROUGH = 33  # number of these values if flights are integrated
 DRAWN = 4000  # number of stored instants of the start-up
 MODULATED = ("chaotic", "quasi-periodic", "slow")
@@ -65,24 +65,24 @@ def loads(found: Findings) -> dict[str, float]:
 
 
 def met(found: Findings) -> dict[str, float]:
-    """Return the share of each kind in `MET` among the simulated motions, and the largest response of each kind, branches included."""
+    """Return the share of each kind in `MOTION_KINDS` among the simulated motions, and the largest response of each kind, branches included."""
     from ..graph.stretches import default_measure
 
     name = default_measure(found.graph)
     kinds = [_kind(measures, text) for _, measures, text in found.simulated]
-    tops: dict[str, list[float]] = {kind: [] for kind in MET}
+    tops: dict[str, list[float]] = {kind: [] for kind in MOTION_KINDS}
     for kind, (_, measures, _) in zip(kinds, found.simulated):
         tops[kind].append(measures.get(name, math.nan))
     for one in found.unbranched:
         tops[_kind(one.measures, one.kind)].append(one.measures.get(name, math.nan))
     for part in stretches(found.graph):
         tops["impacts" if part.branch.description.get("impacts") else "calm"] += list(part.response)
-    shares = {f"met_{kind}": kinds.count(kind) / len(kinds) if kinds else math.nan for kind in MET}
+    shares = {f"met_{kind}": kinds.count(kind) / len(kinds) if kinds else math.nan for kind in MOTION_KINDS}
     return shares | {f"{kind}_peak": largest(values) for kind, values in tops.items()}
 
 
 def _kind(measures: Mapping[str, float], text: str) -> str:
-    """Return the kind of a simulated motion, a key of `MET`."""
+    """Return the kind of a simulated motion, a key of `MOTION_KINDS`."""
     if text == "stuck":
         return "stuck"
     if text in MODULATED or modulation_of(measures):
@@ -282,7 +282,7 @@ class Machines:
         if not columns:
             return None, curves
         step, top = (high - low) / (CHECK - 1), columns["peak_at"]
-        near = max(low, top - ABOUT * step), min(high, top + ABOUT * step)
+        near = max(low, top - FINE_STEPS * step), min(high, top + FINE_STEPS * step)
         closer = np.linspace(*near, ROUGH if self.integrated else FINE)
         grid = np.union1d(np.linspace(low, high, CHECK), closer)
         most = -math.inf

@@ -19,7 +19,7 @@ LARGER = {"mm": "m", "mm/s": "m/s", "mJ": "J", "mW": "W", "mN": "N"}
 """Larger unit in which numbers of a thousand and more are shown, by unit."""
 
 
-MET = {
+MOTION_KINDS = {
     "impacts": "impacts every period or nearly",
     "modulated": "modulated: impacts come and go",
     "calm": "calm: slides without impacts",
@@ -165,7 +165,7 @@ class Recommendation:
     assumed, unknown : list of str
         Sentences about assumptions and unknown results.
     absorber : bool
-        Whether the machine has an absorber in a cavity, so that the descriptions in `MET` apply.
+        Whether the machine has an absorber in a cavity, so that the descriptions in `MOTION_KINDS` apply.
     """
 
     study: str
@@ -246,7 +246,7 @@ class Recommendation:
     @property
     def _kinds(self) -> dict[str, str]:
         """Descriptions of the kinds of simulated motions that apply to the machine."""
-        return MET if self.absorber else PLAIN
+        return MOTION_KINDS if self.absorber else PLAIN
 
     @property
     def headline(self) -> str:
@@ -282,7 +282,7 @@ class Recommendation:
                 ("do better", " while it stays in tune") if tuned < place.worst else ("not do better", "")
             )
             found.append(f"A tuned absorber of the same mass would {verb}: {self.shown(peak, tuned)}{stays}.")
-        tops = {kind: self.met.get(f"{kind}_peak", -math.inf) for kind in MET}
+        tops = {kind: self.met.get(f"{kind}_peak", -math.inf) for kind in MOTION_KINDS}
         kind = max(tops, key=lambda kind: tops[kind])
         if tops["impacts"] > -math.inf and tops[kind] > tops["impacts"]:
             found.append(

@@ -19,14 +19,14 @@ from ..shared.numbers import figures
 from ..survey.plan import Plan
 from .choosing import PLACES, SWEPT, Machines, largest, loads, met
 from .choosing import tidy as _tidy
-from .recommendation import AGREES, LOADS, MET, Jump, Place, Recommendation
+from .recommendation import AGREES, LOADS, MOTION_KINDS, Jump, Place, Recommendation
 from .study_data import Study
 from .survey_study import asked_of
 
 if TYPE_CHECKING:
     from ..survey import Survey
 
-UNSEEN = "not looked at"  # note of a sample that was not computed
+NOT_COMPUTED = "not looked at"  # note of a sample that was not computed
 LATER = (7, 5)  # number of values in each later round, between the neighbours of the best one
 QUIETED = 0.9  # default target, relative to the bare machine's response
 VALUES, STARTS = 9, 6  # number of parameter values, and of starts at each, that are simulated at the choice
@@ -186,7 +186,7 @@ class _Work(Machines):
             nothing = (
                 np.full(self.samples, np.nan),
                 np.full(self.samples, np.nan),
-                np.full(self.samples, UNSEEN, object),
+                np.full(self.samples, NOT_COMPUTED, object),
             )
             row = self.rows.setdefault(value, _Responses(*nothing))
             for own, column in zip(row, found):
@@ -341,10 +341,10 @@ class _Work(Machines):
             )  # fmt: skip
         peaks = rows.known("peak").ravel()
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
-        shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
+        shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MOTION_KINDS}
         tops = {
             name: largest(rows[name])
-            for name in (*(f"{kind}_peak" for kind in MET), *BAND, "modulated_strong")
+            for name in (*(f"{kind}_peak" for kind in MOTION_KINDS), *BAND, "modulated_strong")
         }
         shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
         names = flow_of(self.model).measure_names(self.model)
@@ -370,7 +370,7 @@ class _Responses(NamedTuple):
     """Responses of machines, as arrays.
 
     Fields: the largest response; the largest one if the lowest coexisting response always occurs (both nan if unknown); notes with the
-    reasons (`UNSEEN` if not computed).
+    reasons (`NOT_COMPUTED` if not computed).
     """
 
     known: np.ndarray
@@ -383,7 +383,7 @@ def _responses_of(found: Survey) -> _Responses:
 
 
 def _place(value: float, row: _Responses, samples: int) -> Place:
-    computed = row.notes != UNSEEN
+    computed = row.notes != NOT_COMPUTED
     finite, all_ = row.known[computed], bool(computed.all())
     unknown = int(np.count_nonzero(~np.isfinite(finite)))
     reason = next(

@@ -318,7 +318,7 @@ class SolutionSettings:
         Error of a solution, relative to its last correction.
     jump : float
         A function has a jump if it still changes too much over this part of the first bracket.
-    told : float
+    moved : float
         Distance between a given start and the solution found, in typical sizes, from which a message mentions it.
     cancels : float
         Part of the squares of unknowns below which their difference loses its digits.
@@ -332,7 +332,7 @@ class SolutionSettings:
     huge: float = 1e6
     left: float = 1e-3
     jump: float = 1e-5
-    told: float = 1e-2
+    moved: float = 1e-2
     cancels: float = 1e-9
 
 

@@ -237,7 +237,7 @@ def _moved_note(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     u = np.asarray(u, dtype=float).reshape(-1)
     moved = np.abs(found.u - u) / engine.scale[:-1]
     shift = abs(found.p - float(p)) / float(engine.scale[-1])
-    if max(float(moved.max()), shift) < SOLUTION.told:
+    if max(float(moved.max()), shift) < SOLUTION.moved:
         return ""
     size = float(np.abs(problem.residuals(u, float(p))).max())
     i = int(np.argmax(moved))
@@ -250,7 +250,7 @@ def _moved_note(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
             f"{place}; give a better guess or another parameter value"
         )
     position = place
-    if shift >= SOLUTION.told:
+    if shift >= SOLUTION.moved:
         position += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"
     far = f", {moved[i]:.2g} of its typical size away" if moved[i] >= 0.1 else ""
     return f"the start given is no solution (the largest entry of F is {size:.2g}): the branch begins at {position}{far}"

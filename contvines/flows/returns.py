@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SWEEPS = 20  # most steps of Newton's method
 QUICK = 0.1  # if a correction shrinks by less than this factor, the Jacobian is evaluated again
 SOLVED = 8.0 * ROUNDED  # accuracy of the time at which a cycle crosses the plane, in units of the period
-AWAY, LATEST = 0.5, 1.6  # earliest and latest time of the next crossing, in periods
+EARLIEST, LATEST = 0.5, 1.6  # earliest and latest time of the next crossing, in periods
 
 #: motions through one interval: ends, values at the nodes, durations, times at the Gauss points, and a function for the derivative of duration times rate by the parameter
 Flight = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None, Callable[[np.ndarray], np.ndarray]]
@@ -312,7 +312,7 @@ class FlowSection:
             return float((y - r.start) @ r.normal)
 
         height.terminal, height.direction = True, 1.0  # pyright: ignore[reportFunctionMemberAccess]
-        half = solve_ivp(rate, (0.0, AWAY * r.period), start, **options)
+        half = solve_ivp(rate, (0.0, EARLIEST * r.period), start, **options)
         if not half.success:
             return lost
         found = solve_ivp(rate, (half.t[-1], LATEST * r.period), half.y[:, -1], events=height, **options)

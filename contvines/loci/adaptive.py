@@ -10,7 +10,7 @@ import numpy as np
 
 from ..flows.cycles import CycleProblem
 from ..problems.protocol import Problem, Symmetry
-from .kernels import FOLD, GROWTH, KNOWN, PERIOD
+from .kernels import FOLD, GROWTH, PERIOD, VALID
 from .linear import borders_at
 from .problem import LocusProblem, Work
 
@@ -104,7 +104,7 @@ class AdaptiveLocus(LocusProblem):
         second.reference = first.reference
         for work in self.works:
             work.borders[:] = borders_at(self.at(p), self.condition, inner, float(value), work.borders)
-            work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # slopes of the old borders are invalid
+            work.state[VALID] = min(work.state[VALID], 0.0)  # slopes of the old borders are invalid
 
     def in_phase(self, u: np.ndarray) -> bool:
         """Return False, so that phase and borders are renewed at every adaptation of the mesh."""

@@ -35,7 +35,7 @@ from .tracing import trace_locus
 
 T = TypeVar("T")
 # largest distance, in sides of the plane, of a point from the chord of an arc that may contain it
-BESIDE = 0.1
+ARC_HEIGHT = 0.1
 LARGEST = 120  # most loci of a chart; its message reports when it is reached
 
 
@@ -234,7 +234,7 @@ class Charting:
         steps, offset = np.diff(values, axis=0) / unit, (place - values[:-1]) / unit
         shares = (offset * steps).sum(axis=1) / np.maximum((steps**2).sum(axis=1), TINY)
         nearby = (np.abs(shares - 0.5) <= 0.6) & (
-            np.abs(offset - shares[:, None] * steps).max(axis=1) < BESIDE
+            np.abs(offset - shares[:, None] * steps).max(axis=1) < ARC_HEIGHT
         )
         for i in np.flatnonzero(nearby | (near[:-1] < PLACES.end) | (near[1:] < PLACES.end)):
             share = float(np.clip(shares[i], 0.0, 1.0))

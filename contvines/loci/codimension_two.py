@@ -39,8 +39,8 @@ from .starts import Candidate, begin, first_point
 
 FEW = 4  # points of a border's locus at which its equations are tested for being singular
 # ratio of the squared sizes of two cycles from which the point at which they vanish is extrapolated
-SHRINKS = 2.0
-BESIDE = 0.02  # distance (in the metric) on either side of a locus's end between which the parent motion's point is searched
+SIZE_RATIO = 2.0
+REACH = 0.02  # distance (in the metric) on either side of a locus's end between which the parent motion's point is searched
 FREQUENCY_KNOWN = ("bogdanov-takens", "resonance-1-1", "resonance-1-2", "resonance-1-3", "resonance-1-4")
 """Kinds that determine the critical pair's position, so that no angle or frequency is given; rounding may split a double zero into a pair."""
 
@@ -381,7 +381,7 @@ def beginning(
     engine, start = first_point(parent, met.u, p, q, within, Settings())
     if start is None:
         return None
-    reach = BESIDE + 2.0 * ahead / float(np.linalg.norm(start.tangent[-2:]))
+    reach = REACH + 2.0 * ahead / float(np.linalg.norm(start.tangent[-2:]))
     around = [engine.beside(start, step) for step in (-reach, reach)]
     points = [point for point in around if point is not None]
     if len(points) < 2:
@@ -400,7 +400,7 @@ def vanishing(locus: LocusProblem, ends: Sequence[Solved], within: Interval) -> 
     last = _place(locus, ends[-1])
     mean, size = problem.center(last.u)
     places = (_place(locus, end) for end in reversed(ends))
-    before = next((one for one in places if problem.center(one.u)[1] > SHRINKS * size), None)
+    before = next((one for one in places if problem.center(one.u)[1] > SIZE_RATIO * size), None)
     if before is None or not problem.free_period:
         return None
     behind = np.subtract(last[1:], before[1:])

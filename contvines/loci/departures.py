@@ -60,7 +60,7 @@ DOUBLED = {"generalized-period-doubling": "fold"}
 DOUBLED_CYCLES = {"resonance-1-2": "neimark-sacker", "fold-flip": "neimark-sacker"}
 #: kind of a point -> kind of the locus of cycles around an equilibrium that begins there
 SMALL = {"generalized-hopf": "fold", "zero-hopf": "neimark-sacker", "double-hopf": "neimark-sacker"}
-ASIDE = 0.01  # distance from a crossing of branches at which a locus is started, as part of the first parameter's interval
+START_SHIFT = 0.01  # distance from a crossing of branches at which a locus is started, as part of the first parameter's interval
 # amplitudes of the new motion at which its special point is tried, relative to the motion's size
 AMPLITUDES = (0.05, 0.02, 0.1, 0.005)
 # the same for cycles of flows: at smaller amplitudes the tests nearly vanish
@@ -89,7 +89,7 @@ def leaving(point: PlanePoint, locus: Locus, bounds: Interval, over: str) -> Ite
         if not crossing:
             yield Candidate(problem, kind, u, p, q, point.label)
         elif kind != "fold":  # start next to the crossing, where the equations are regular
-            for shift in (-ASIDE, ASIDE):
+            for shift in (-START_SHIFT, START_SHIFT):
                 yield Candidate(problem, kind, u, p + shift * (bounds[1] - bounds[0]), q, point.label)
     if point.kind in CODIMENSION_TWO and CODIMENSION_TWO[point.kind].border:
         for j in point.margins:
@@ -154,7 +154,7 @@ INTERVALS = 40  # intervals of the first mesh
 STEP = 0.01  # step of differences, in units of the states and of the parameters
 # sizes of the first orbit, and changes of the parameters, in these units; tried in this order
 SHARES = (0.1, 0.03, 0.01, 0.003)
-ALIKE = 0.5  # smallest ratio of the size of a solved orbit to the predicted one
+LEAST_RATIO = 0.5  # smallest ratio of the size of a solved orbit to the predicted one
 
 
 class Asymptotics:
@@ -280,6 +280,6 @@ def homoclinic_of(point: PlanePoint, bounds: Interval, within: Interval) -> Iter
             continue
         end, u, first = found
         size, wanted = (np.ptp(y.reshape(-1, near.d) / scale, axis=0).max() for y in (u[: end.states], x))
-        if size > ALIKE * wanted:
+        if size > LEAST_RATIO * wanted:
             yield Candidate(end, "homoclinic", u, first, second, point.label)
             return

@@ -48,7 +48,7 @@ from .settings import SCALING
 
 # conditions of loci; PERIOD, GROWTH and OWN exist in Python only
 FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD, GROWTH, OWN = range(8)
-APART = 0.03  # largest distance from an equilibrium, relative to its size, of a cycle that represents a homoclinic orbit
+LARGEST_DISTANCE = 0.03  # largest distance from an equilibrium, relative to its size, of a cycle that represents a homoclinic orbit
 
 #: kind of a special point -> condition of its locus; borders have the condition MARGIN
 CONDITIONS = {
@@ -63,8 +63,8 @@ CONDITIONS = {
 
 ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of `solutions`; SPARE has two
 B, C, FLIP_B, FLIP_C = range(4)  # rows of `borders`
-# entries of `state`; KNOWN: -1 nothing is valid, 0 the directions are, 1 the tests' derivatives, too
-KNOWN, SIGN, ANGLE, SERVED = range(4)
+# entries of `state`; VALID: -1 nothing is valid, 0 the directions are, 1 the tests' derivatives, too
+VALID, SIGN, ANGLE, AGE = range(4)
 LONGEST = 4  # points after which borders are renewed
 TURNED = 1.02  # length of the null vector at which borders are renewed; it is 1 when they are new
 
@@ -219,7 +219,7 @@ def span(data, work):
     else:
         columns[0] *= scales[n]
         columns[1] *= scales[last]
-        if state[KNOWN] >= 0.0:
+        if state[VALID] >= 0.0:
             turn(work)
             rotate(columns, state[ANGLE])
         else:  # the first time: start with a random row, then use the one of this point
@@ -232,7 +232,7 @@ def span(data, work):
         parted(work, 2, along)
         directions[2, n] -= math.sin(state[ANGLE]) * scales[n]
         directions[2, last] += math.cos(state[ANGLE]) * scales[last]
-    state[KNOWN] = 0.0
+    state[VALID] = 0.0
 
 
 def particular(data, work):
@@ -254,7 +254,7 @@ def frozen(work, point):
     The derivatives have errors of about the difference step, and they do not change more over such a distance.
     """
     sizes = np.maximum(work.scales[: len(point)], np.abs(point))
-    if work.state[KNOWN] > 0.0 and (np.abs(point - work.frozen) < SCALING.step * sizes).all():
+    if work.state[VALID] > 0.0 and (np.abs(point - work.frozen) < SCALING.step * sizes).all():
         return True
     work.frozen[:] = point
     return False
@@ -268,7 +268,7 @@ def locus_linearise(data, U, q, work):
     place = np.append(U, q)
     unmoved = frozen(work, place)
     if not unmoved:
-        state[KNOWN] = min(state[KNOWN], 0.0)
+        state[VALID] = min(state[VALID], 0.0)
         calls.assign(second, first, p)
         if not math.isfinite(calls.linearise(second, u, q, base)):
             return math.inf
@@ -301,10 +301,10 @@ def locus_bordered(data, work, border, target, step, tangent):
         particular(data, work)
         slopes = slopes_along(data, work, directions[0])
         work.kept[:] = math.nan
-    if state[KNOWN] < 1.0:
+    if state[VALID] < 1.0:
         for steep, direction in zip(work.steep, others):
             steep[:count] = slopes_along(data, work, direction)
-        state[KNOWN] = 1.0
+        state[VALID] = 1.0
     small = np.zeros((count + 1, count + 3))
     small[:, : count + 1] = np.vstack([work.steep[: count + 1, :count].T, others @ border])
     small[:count, -2] = -residuals[n:] - slopes
@@ -354,10 +354,10 @@ def renew(data, work, b, c, null):
 def worn(work, null):
     """Whether the borders should be renewed: the null vector has turned away from c, or they have been used for LONGEST points."""
     state, n = work.state, len(null) - 1
-    state[SERVED] += 1.0
-    if state[SERVED] < LONGEST and np.linalg.norm(null[:n] / work.scales[:n]) < TURNED:
+    state[AGE] += 1.0
+    if state[AGE] < LONGEST and np.linalg.norm(null[:n] / work.scales[:n]) < TURNED:
         return False
-    state[SERVED] = 0.0
+    state[AGE] = 0.0
     return True
 
 
@@ -370,7 +370,7 @@ def locus_inspect(data, U, q, work, row):
     kind, null, margins = data.kind, work.solutions[TESTED], row[2 * data.multipliers :]
     n = len(work.base_F)
     if kind in (FOLD, BRANCH, FLIP) and worn(work, null):
-        work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # derivatives with the old borders are invalid
+        work.state[VALID] = min(work.state[VALID], 0.0)  # derivatives with the old borders are invalid
         if kind != FLIP:
             renew(data, work, borders[B], borders[C], null)
         else:
@@ -381,7 +381,7 @@ def locus_inspect(data, U, q, work, row):
     data.calls.inspect(first, U[:n], data.unit * U[n], base, row[:-3])
     margins[-3:] = U[n] - reference[3], reference[4] - U[n], math.inf
     if kind == PERIOD:  # the cycle represents a homoclinic orbit as long as it comes near an equilibrium
-        margins[0] = math.log10(APART / first.from_rest(U[:n], data.unit * U[n]))
+        margins[0] = math.log10(LARGEST_DISTANCE / first.from_rest(U[:n], data.unit * U[n]))
     margins[work.masked] = math.inf
     if kind == PAIR:
         place = reference[0] = pair_of(row, data.multipliers, data.flow, reference[0])[1]

@@ -22,7 +22,7 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
 from .adaptive import AdaptiveLocus, on_mesh
-from .kernels import APART, FLIP, MARGIN, OWN, PAIR, PERIOD, condition
+from .kernels import FLIP, LARGEST_DISTANCE, MARGIN, OWN, PAIR, PERIOD, condition
 from .linear import Linearisation, borders_at, singularity
 from .problem import LocusProblem, check_second, has_natural_units
 from .settings import VANISHING
@@ -30,7 +30,7 @@ from .settings import VANISHING
 PLAIN = 16.0  # a parameter whose size is between 1 / PLAIN and PLAIN has the unit 1
 LONGER = 1.3  # largest ratio of successive periods on the way to a given one
 # smallest part of its duration that a mesh interval near a saddle keeps when the period is reduced
-LEFT = 0.1
+LEAST_PART = 0.1
 
 Cycle = tuple[CycleProblem, np.ndarray, float]
 
@@ -125,7 +125,7 @@ def begin(start: Candidate, over: str, bounds: tuple[float, float] = (-np.inf, n
     locus.borders = borders_at(problem, wanted, u, p)
     if wanted == PERIOD:
         # the distance from an equilibrium is a margin only if the cycle is near one; before a saddle-node on the cycle there is none yet
-        near = on_mesh(problem).from_rest(u, p) < 0.1 * APART
+        near = on_mesh(problem).from_rest(u, p) < 0.1 * LARGEST_DISTANCE
         locus.masked = (1,) if near else (0, 1)
     if wanted == MARGIN:
         margins = Linearisation(problem).at(u, p).margins
@@ -332,7 +332,7 @@ def _longer_cycle(problem: CycleProblem, u: np.ndarray, p: float, period: float)
         more = (period - old) * saddle.share / total
         away = np.abs((x[:, 0] - saddle.place) / problem.node_scale).max(axis=1)
         for i in np.argsort(np.maximum(away, np.roll(away, -1))):
-            change = max(more, (LEFT - 1.0) * times[i])
+            change = max(more, (LEAST_PART - 1.0) * times[i])
             times[i] += change
             more -= change
             if not more:

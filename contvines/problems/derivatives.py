@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from .large.jacobians import Colouring
 
-BESIDE = (-0.37, 0.41)  # positions, in lengths from the start, where noise is measured a second time
+NOISE_PLACES = (-0.37, 0.41)  # positions, in lengths from the start, where noise is measured a second time
 
 
 class Differentiated:
@@ -325,7 +325,7 @@ class Differentiated:
             floor = DERIVATIVES.rounded * np.maximum(change, 0.001 * change.max(initial=0.0))
             # if only this point has it, it is a singularity, such as that of |u| at 0
             if (noise > floor).any():
-                nearby = [noise_of(lambda t, s=s: line(s + t), DERIVATIVES.spacing) for s in BESIDE]
+                nearby = [noise_of(lambda t, s=s: line(s + t), DERIVATIVES.spacing) for s in NOISE_PLACES]
                 noise = np.where((noise > floor) & (np.max(nearby, axis=0) <= floor), 0.0, noise)
             # a staircase: close samples lie on the same stair, so that only wide ones show the steps
             steps = roughness(line)

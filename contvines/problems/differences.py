@@ -17,7 +17,7 @@ STEP = 0.006  # step as part of the length: roundoff eps/STEP and truncation STE
 SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
 FOURTH = (2.0 / 3.0, -1.0 / 12.0)
 FACTOR = 64.0  # ratio of successive lengths that `bend` tries
-ASIDE = 1.37  # ratio of two lengths whose slopes are compared; effects of rounding make them differ
+SECOND_LENGTH = 1.37  # ratio of two lengths whose slopes are compared; effects of rounding make them differ
 HALVINGS = 5  # bisections between two tried lengths, to find where f becomes nonlinear
 MANY = 64  # rows above which a row is examined only if its length is clearly shorter than the best so far
 CLOSER = 20  # bisections after which a continuous function has hardly any change left
@@ -136,13 +136,13 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         floor = DERIVATIVES.cancelled * EPSILON * np.abs(centre) + noticeable
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
-        nearby = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
-            ASIDE * lengths[:, None]
+        nearby = np.array([0.5 * (f(SECOND_LENGTH * t) - f(-SECOND_LENGTH * t)) for t in lengths]) / (
+            SECOND_LENGTH * lengths[:, None]
         )
         even = np.array([0.5 * (f(t) + f(-t)) - centre for t in lengths])
         reliable = np.abs(odd) > floor + DERIVATIVES.cancelled * EPSILON * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
-        # slopes at t and at ASIDE t differ where f is a staircase of rounding, or another power of t
+        # slopes at t and at SECOND_LENGTH t differ where f is a staircase of rounding, or another power of t
         reliable &= np.abs(slope - nearby) <= 0.05 * np.abs(slope)
         found, many = np.inf, odd.shape[1] > MANY
         for r in range(odd.shape[1]):
@@ -163,8 +163,8 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
 def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.ndarray) -> float:
     """Length up to which an even function grows like t^2; infinity if it does so at all lengths."""
     curvature = even / lengths[:, None] ** 2
-    nearby = np.array([0.5 * (f(ASIDE * t) + f(-ASIDE * t)) for t in lengths]) - f(0.0)
-    nearby /= (ASIDE * lengths[:, None]) ** 2
+    nearby = np.array([0.5 * (f(SECOND_LENGTH * t) + f(-SECOND_LENGTH * t)) for t in lengths]) - f(0.0)
+    nearby /= (SECOND_LENGTH * lengths[:, None]) ** 2
     reliable = (np.abs(even) > floor) & (np.abs(curvature - nearby) <= 0.05 * np.abs(curvature))
     found = np.inf
     for r in range(even.shape[1]):
@@ -333,7 +333,7 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float) -> float | N
             reliable = plain & (mixed > floor) & np.isfinite(mixed)
             if reliable.any():
                 # where large terms of this unknown cancel in a row, rounding absorbs the effect of the other one
-                reliable &= np.abs(both(ASIDE * t)[0] / ASIDE - mixed) <= 0.05 * mixed
+                reliable &= np.abs(both(SECOND_LENGTH * t)[0] / SECOND_LENGTH - mixed) <= 0.05 * mixed
             if reliable.any():
                 return float(t * (direct[reliable] / mixed[reliable]).min())
     return None

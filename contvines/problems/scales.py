@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-APART = 30.0  # of many unknowns, those whose sorted sizes have no gap by this factor belong to one field
+FIELD_GAP = 30.0  # of many unknowns, those whose sorted sizes have no gap by this factor belong to one field
 MANY = 20  # up to so many unknowns, each has its own scale
 
 
@@ -118,7 +118,7 @@ def in_fields(sizes: np.ndarray) -> np.ndarray:
     if len(sizes) <= MANY:
         return sizes
     order = np.argsort(sizes)
-    gaps = np.flatnonzero(sizes[order][1:] > APART * sizes[order][:-1])
+    gaps = np.flatnonzero(sizes[order][1:] > FIELD_GAP * sizes[order][:-1])
     result = np.empty_like(sizes)
     for part in np.split(order, gaps + 1):
         result[part] = np.sqrt((sizes[part] ** 2).mean())
@@ -128,7 +128,7 @@ def in_fields(sizes: np.ndarray) -> np.ndarray:
 EACH = 64  # up to so many unknowns, the length of each is measured; of more, one length for all
 PAIRS = 12  # up to so many unknowns, bilinear terms of pairs are measured
 FEW = 2  # lengths tried on either side of the guess if the function is slow
-BESIDE = 2.0**-17  # relative change of the parameter from which the size of its terms is computed
+PARAMETER_CHANGE = 2.0**-17  # relative change of the parameter from which the size of its terms is computed
 HUGE = 20  # powers of 1 / `ROUNDED` that are tried: from the smallest floating-point number to the largest
 PATIENCE = 0.5  # seconds that measuring all lengths may take
 
@@ -203,7 +203,7 @@ def of_parameter(f: Callable[[float], np.ndarray], p: float) -> np.ndarray:
     p : float
     """
     with np.errstate(all="ignore"):
-        found = np.abs(f(p + BESIDE * p) - f(p)) / BESIDE
+        found = np.abs(f(p + PARAMETER_CHANGE * p) - f(p)) / PARAMETER_CHANGE
     return np.where(np.isfinite(found), found, 0.0)
 
 

@@ -36,7 +36,7 @@ STEPS = {30: 60, 500: 24}  # most unknowns: continuation steps each way; FEW for
 FEW = 6
 LONGEST = 0.5  # largest continuation step, in the metric
 # sum of the angles between tangents (rad) at which the trace ends: the branch has shown its scales
-TURNED = 3.0
+TOTAL_TURN = 3.0
 TURN = 0.6  # largest angle (rad) between successive tangents
 SLOW = 0.2  # a branch runs away if the parameter moves by less than this part of its range while the unknowns double theirs
 MOST = 64  # most unknowns that are tested for being zeros up to rounding
@@ -314,7 +314,7 @@ class Scout:
                 self.before = self.high - self.low
             z, tangent, turned = found[0], ahead, turned + turn
             self._record(z, False)
-            if turned > TURNED or self._runs_away():
+            if turned > TOTAL_TURN or self._runs_away():
                 return
             h = min(1.7 * h, LONGEST)
 

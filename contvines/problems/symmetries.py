@@ -189,7 +189,7 @@ def in_order(scale: np.ndarray) -> Callable[[np.ndarray], SupportsRichComparison
 
 # distances of the test states from the start, in lengths over which the equations are nonlinear
 REACHES = (0.01, 0.1, 0.4, 1.0)
-ALIKE = 2  # further test states at which all unknowns move alike: at random states of a discretised field stiff terms dominate
+UNIFORM_STATES = 2  # further test states at which all unknowns move alike: at random states of a discretised field stiff terms dominate
 NOISY = 30.0  # largest accepted disagreement, in units of the noise of a row
 MIXED = 60  # most unknowns for which any constant matrix S is accepted in F(R u) = S F(u)
 MORE = 6  # states in addition to those that determine such a matrix; they test it
@@ -279,7 +279,7 @@ def asymmetry(
     mixed : bool
     """
     states, n = _states(*start, *lengths), len(start[0])
-    wanted = [next(states) for _ in range(len(REACHES) + ALIKE)]
+    wanted = [next(states) for _ in range(len(REACHES) + UNIFORM_STATES)]
 
     tried, lost = _evaluated_pairs(values, image, wanted)
     if len(lost) > len(tried):

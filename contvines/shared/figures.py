@@ -29,7 +29,7 @@ Style = str | Mapping[str, Any] | None
 Size = tuple[float, float] | None
 """Width and height in inches."""
 
-HOUSE = Path(__file__).with_name("house.mplstyle")
+DEFAULT_STYLE = Path(__file__).with_name("house.mplstyle")
 STYLES = {path.stem: path for path in Path(__file__).with_name("styles").glob("*.mplstyle")}
 """Styles of this package by name, for journals, print without colours, and slides."""
 FULL_WIDTH = 6.5  # inches; in narrower figures texts, marks and lines shrink
@@ -61,7 +61,7 @@ def styled(style: Style = None) -> Iterator[None]:
         list(map(str.strip, style.split(","))) if isinstance(style, str) else [dict(style or {})]
     )
     with ExitStack() as stack:
-        stack.enter_context(context(["default", HOUSE, own]))
+        stack.enter_context(context(["default", DEFAULT_STYLE, own]))
         for name in chosen:
             try:
                 stack.enter_context(context(STYLES.get(name, name) if isinstance(name, str) else name))

@@ -11,7 +11,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-KNOWN = (
+ENDINGS = (
     "vines",
     "toml",
     "csv",
@@ -28,7 +28,7 @@ KNOWN = (
     "xls",
     "xlsx",
 )
-ALSO = {"csv": ("txt",)}  # endings that fit beside the usual one
+OTHER_ENDINGS = {"csv": ("txt",)}  # endings that fit beside the usual one
 
 
 def write_csv(path: str | Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
@@ -103,7 +103,7 @@ def refuse_ending(path: Path, ending: str) -> None:
             f"{path}: results are kept in files, not written to the standard output; use -o result.{ending}."
         )
     own = path.suffix.lower().removeprefix(".")
-    if own in KNOWN and own != ending and own not in ALSO.get(ending, ()):
+    if own in ENDINGS and own != ending and own not in OTHER_ENDINGS.get(ending, ()):
         raise ValueError(
             f"{path}: this is not a .{ending} file by its name; use -o {path.with_suffix('.' + ending)}."
         )

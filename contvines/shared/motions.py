@@ -14,7 +14,7 @@ from .numbers import ROUNDED
 SIGMAS = 3.0  # standard errors above zero from which on a Lyapunov exponent means chaos
 P = TypeVar("P", covariant=True)
 # multipliers closer to the stability boundary than this factor times the nearest one's distance lie on it, too
-KNOWN = 10.0
+SAME_DISTANCE = 10.0
 GOLDEN = 60  # iterations for the root of g^(d+1) = g + 1
 
 
@@ -135,7 +135,7 @@ def onto_axis(eigenvalues: np.ndarray) -> np.ndarray:
 def _nearest(gaps: np.ndarray, near: float) -> np.ndarray:
     gaps = np.nan_to_num(np.abs(gaps), nan=np.inf)
     nearest = float(gaps.min(initial=np.inf))
-    return (gaps <= KNOWN * nearest + ROUNDED) & np.isfinite(gaps) & (nearest <= near)
+    return (gaps <= SAME_DISTANCE * nearest + ROUNDED) & np.isfinite(gaps) & (nearest <= near)
 
 
 def marginal_text(multipliers: Iterable[complex], flow: bool = False) -> str:

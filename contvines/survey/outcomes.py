@@ -26,7 +26,7 @@ Simulated = tuple[float, Mapping[str, float], str]
 """A motion on which a simulation settles: value of the parameter, measures by name, word."""
 GRID = 401  # number of parameter values at which coexisting responses are compared
 # share of the interval with known responses from which on a system counts as known
-KNOWN = 1.0 - COVERAGE.least
+LEAST_SHARE = 1.0 - COVERAGE.least
 
 
 @dataclass(frozen=True)
@@ -279,7 +279,7 @@ PLAIN: dict[str, Outcome] = {
     "modulated": modulated,
 }
 """Outcomes by name."""
-MADE: dict[str, Callable[..., Mapping[str, float]]] = {
+WITH_ARGUMENT: dict[str, Callable[..., Mapping[str, float]]] = {
     "stable": stable_range,
     "first": first_point,
     "share": share,

@@ -22,7 +22,7 @@ from ..shared.files import write_csv
 from ..shared.numbers import figures
 from ..shared.on_demand import needed
 from ..text_table import Table, titled
-from .outcomes import KNOWN, OF_ALL
+from .outcomes import LEAST_SHARE, OF_ALL
 from .plan import Plan, PlanError
 from .work import NOT_YET, Row
 
@@ -111,7 +111,7 @@ class Survey(Resumable):
         """Number of systems with gaps in their results, which their notes describe."""
         return int(np.count_nonzero(self.notes != "")) - self.failed - self.waiting
 
-    def known(self, outcome: str, covered: float = KNOWN) -> np.ndarray:
+    def known(self, outcome: str, covered: float = LEAST_SHARE) -> np.ndarray:
         """Return an outcome, with nan where it is only a bound.
 
         Outcomes about all motions together (`contvines.survey.outcomes.OF_ALL`), such as the peak, are bounds if the known stable
@@ -199,7 +199,7 @@ class Survey(Resumable):
         return plot_survey(self, outcome, **options)
 
     def best(
-        self, outcome: str, largest: bool = False, quantile: float | None = None, covered: float = KNOWN
+        self, outcome: str, largest: bool = False, quantile: float | None = None, covered: float = LEAST_SHARE
     ) -> tuple[dict[str, float], float]:
         """Return the point of the axes with the lowest (or largest) outcome.
 

@@ -19,7 +19,7 @@ from ..shared import files
 from ..shared.on_demand import needed
 from ..shared.row_journal import Rows
 from . import pools
-from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
+from .outcomes import ARGUMENTS, PLAIN, WITH_ARGUMENT, Outcome
 from .plan import Plan, PlanError, planned
 from .results import Survey
 from .work import NOT_YET, Carrying, Family, Job, Row
@@ -53,9 +53,9 @@ def outcome_named(wanted: str, more: Mapping[str, Outcome] | None = None) -> Out
         raise PlanError(
             f"[survey] outcomes: {wanted!r}: there are no points of this kind{did_you_mean(argument, BY_NAME)}; known are {', '.join(BY_NAME)}"
         )
-    if kind in MADE and argument:
-        return partial(MADE[kind], **{ARGUMENTS[kind]: argument})
-    forms = [f"{name}:..." for name in MADE]
+    if kind in WITH_ARGUMENT and argument:
+        return partial(WITH_ARGUMENT[kind], **{ARGUMENTS[kind]: argument})
+    forms = [f"{name}:..." for name in WITH_ARGUMENT]
     raise PlanError(
         f"[survey] outcomes: {wanted!r} is unknown; choose among {', '.join([*functions, *forms])}"
     )

@@ -29,7 +29,8 @@ GRID = 900  # most grid points of the search for a guess
 CANDIDATES = 8  # grid points from which least squares begins
 STARTS = 5  # random starts of a sweep, besides rest
 TRIED = 6  # random parameter values that are combined with these starts
-ASTRAY = 0.1  # largest scatter, relative to the mean time between impacts; above it the fit is refused
+# largest scatter, relative to the mean time between impacts; above it the fit is refused
+LARGEST_SCATTER = 0.1
 HALVINGS = 40  # bisections that move a default limit to the last possible value of a parameter
 SETTLED = 400  # forcing periods that are left out before a steady response is measured
 WIDEST = 0.1  # largest step of finite differences, relative to the distance of the limits
@@ -98,7 +99,7 @@ def from_impacts(
 
     found = fit(residuals, _nearer(residuals, unknown, bounds, count), bounds, confidence, spent=1)
     between = float(elapsed[-1]) / (count - 1)
-    if found.scatter > ASTRAY * between:
+    if found.scatter > LARGEST_SCATTER * between:
         raise ParameterError(
             f"no {', '.join(unknown)} make{'s' if len(unknown) == 1 else ''} the model follow these impacts: at best they scatter by "
             f"{found.scatter:.3g}, with {between:.3g} from one to the next. Is the machine the measured one, does the run begin as the "

@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 
 BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
 """Forcing periods (or events) between two searches for a return, of a motion simulated alone."""
-AGAIN = 8.0  # forcing periods after which a settled motion is solved for
+CHECK_PERIODS = 8.0  # forcing periods after which a settled motion is solved for
 PATIENCE = 3  # further searches for a return of a motion that has not settled, unless similar motions have settled late
 ENOUGH = 20_000  # forcing periods, of all similar chaotic motions together, after which they count as chaotic; events of a motion simulated alone
 LATE = 3000.0  # forcing periods between two such searches
-TOLD = 6  # searches after which a motion that has not settled is identified with a known one that does not
+# searches after which a motion that has not settled is identified with a known one that does not
+SEARCHES = 6
 UNENDING = ("chaotic", "quasi-periodic", "slow")
 
 
@@ -156,7 +157,7 @@ class Fleet:
         self.simulator.go_on(batch.states[i])
         self._begun = self.simulator.time
         if outcome == Outcome.SETTLED:
-            return self._found(self._attractor_reached(AGAIN, self.longest, 1), i)
+            return self._found(self._attractor_reached(CHECK_PERIODS, self.longest, 1), i)
         return self._unsettled(i, batch)
 
     def _attractor_reached(self, transient: float, longest: int, patience: int) -> Attractor:
@@ -236,7 +237,7 @@ class Fleet:
                 return self._assign(i, Motion("stuck", state=simulator.state.copy()))
             if run.chatters and next(returns(run, self.longest, simulator.waiting.returned), None):
                 return self._assign(i, Motion("chatter", state=simulator.state.copy()))
-            if (looks >= TOLD and any(unending)) or simulator.count - start_count > ENOUGH:
+            if (looks >= SEARCHES and any(unending)) or simulator.count - start_count > ENOUGH:
                 break
         if any(unending):
             return self._assign(i, unending.index(True))
