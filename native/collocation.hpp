@@ -217,14 +217,14 @@ inline void back(const double* panel, whole n, whole width, whole side, whole s,
 inline double solve(const System& y) {
     const whole N = y.count, n = y.inner, d = y.node, k = y.shared, s = y.sides, K = k + s, all = n + d, width = padded(n + 2 * d + K), wide = padded(3 * d + K);
     const whole widest = width > wide ? width : wide;
-    double *kept = y.room, *chain = kept + N * n * width, *panel = chain + N * d * wide, *two = panel + all * width;
+    double *panels = y.room, *chain = panels + N * n * width, *panel = chain + N * d * wide, *two = panel + all * width;
     double *border = two + 2 * d * wide, *next = border + k * width, *z = next + k * wide, *column = z + s * widest, *small = column + all + d;
     double *sides = small + (d + k) * (d + k), *ends = sides + (d + k) * s, *foot = ends + d * s;
-    double *at_first = foot + k * K, *here = at_first + k * d;
-    auto* order = reinterpret_cast<whole*>(here + k * d);
+    double *at_first = foot + k * K, *at_node = at_first + k * d;
+    auto* order = reinterpret_cast<whole*>(at_node + k * d);
     double sign = 1.0;
     for (whole i = 0; i < k * K; i++) foot[i] = y.foot[i];
-    for (whole i = 0; i < k * d; i++) here[i] = 0.0;
+    for (whole i = 0; i < k * d; i++) at_node[i] = 0.0;
     for (whole i = 0; i < 2 * d * wide; i++) two[i] = 0.0;
     for (whole b = 0; b < N; b++) {
         const double *A = y.blocks + b * all * (n + 2 * d), *C = y.columns + b * all * K;
@@ -237,7 +237,7 @@ inline double solve(const System& y) {
             for (whole c = n + 2 * d + K; c < width; c++) row[c] = 0.0;
         }
         sign *= triangularise(panel, all, n, width, column);
-        for (whole i = 0; i < n * width; i++) kept[b * n * width + i] = panel[i];
+        for (whole i = 0; i < n * width; i++) panels[b * n * width + i] = panel[i];
         const double* rest = panel + n * width;
         for (whole i = 0; i < d; i++)
             for (whole c = 0; c < d; c++) y.left[(b * d + i) * d + c] = rest[i * width + n + c], y.right[(b * d + i) * d + c] = rest[i * width + n + d + c];
@@ -245,7 +245,7 @@ inline double solve(const System& y) {
             double* row = border + r * width;
             const double* own = y.rows + (b * k + r) * all;
             for (whole c = 0; c < n; c++) row[c] = own[d + c];
-            for (whole c = 0; c < d; c++) row[n + c] = own[c] + here[r * d + c], row[n + d + c] = 0.0;
+            for (whole c = 0; c < d; c++) row[n + c] = own[c] + at_node[r * d + c], row[n + d + c] = 0.0;
             for (whole c = 0; c < K; c++) row[n + 2 * d + c] = foot[r * K + c];
             for (whole c = n + 2 * d + K; c < width; c++) row[c] = 0.0;
         }
@@ -258,7 +258,7 @@ inline double solve(const System& y) {
             }
             for (whole r = 0; r < k; r++) {
                 double* row = border + r * width + n;
-                for (whole c = 0; c < d; c++) at_first[r * d + c] = row[c], here[r * d + c] = row[d + c];
+                for (whole c = 0; c < d; c++) at_first[r * d + c] = row[c], at_node[r * d + c] = row[d + c];
                 for (whole c = 0; c < K; c++) foot[r * K + c] = row[2 * d + c];
             }
             continue;
@@ -280,7 +280,7 @@ inline double solve(const System& y) {
         take_out(two, d, wide, next, k);
         for (whole r = 0; r < k; r++) {
             const double* row = next + r * wide;
-            for (whole c = 0; c < d; c++) at_first[r * d + c] = row[d + c], here[r * d + c] = row[2 * d + c];
+            for (whole c = 0; c < d; c++) at_first[r * d + c] = row[d + c], at_node[r * d + c] = row[2 * d + c];
             for (whole c = 0; c < K; c++) foot[r * K + c] = row[3 * d + c];
         }
         for (whole i = 0; i < d; i++) {
@@ -292,7 +292,7 @@ inline double solve(const System& y) {
     const whole size = d + k;
     for (whole i = 0; i < size; i++) {
         double *row = small + i * size, *side = sides + i * s;
-        const double *a = i < d ? two + i * wide + d : at_first + (i - d) * d, *b = i < d ? two + i * wide : here + (i - d) * d;
+        const double *a = i < d ? two + i * wide + d : at_first + (i - d) * d, *b = i < d ? two + i * wide : at_node + (i - d) * d;
         const double* e = i < d ? two + i * wide + 3 * d : foot + (i - d) * K;
         for (whole c = 0; c < d; c++) row[c] = a[c] + y.closure * b[c];
         for (whole c = 0; c < k; c++) row[d + c] = e[c];
@@ -320,7 +320,7 @@ inline double solve(const System& y) {
         }
         for (whole i = 0; i < s * widest; i++) z[i] = 0.0;
         put(n, own, d), put(n + d, ends, d), put(n + 2 * d, shared, k);
-        back(kept + b * n * width, n, width, n + 2 * d + k, s, z, widest);
+        back(panels + b * n * width, n, width, n + 2 * d + k, s, z, widest);
         take(own + d * s, n);
         for (whole i = 0; i < d * s; i++) ends[i] = own[i];
     }
@@ -414,8 +414,8 @@ inline double across(const Cycle& y, const double* speeds, double* maps) {
     };
     for (whole i = 0; i < count; i++) {
         for (whole r = 0; r < d * d; r++) a[r] = y.right[i * d * d + r], b[r] = -y.left[i * d * d + r];
-        const double here = mirror(speeds + i * d, v), there = mirror(speeds + (i + 1 < count ? i + 1 : 0) * d, w);
-        if (!(fabs(here) > 0.0) || !solve_plain(a, b, d, d)) return -1.0;
+        const double own_size = mirror(speeds + i * d, v), next_size = mirror(speeds + (i + 1 < count ? i + 1 : 0) * d, w);
+        if (!(fabs(own_size) > 0.0) || !solve_plain(a, b, d, d)) return -1.0;
         for (whole r = 0; r < d; r++) {  // b (1 - v v')
             double dot = 0.0;
             for (whole c = 0; c < d; c++) dot += b[r * d + c] * v[c];
@@ -426,7 +426,7 @@ inline double across(const Cycle& y, const double* speeds, double* maps) {
             for (whole r = 0; r < d; r++) dot += w[r] * b[r * d + c];
             for (whole r = 0; r < d; r++) b[r * d + c] -= dot * w[r];
         }
-        product *= b[0] * here / there;
+        product *= b[0] * own_size / next_size;
         for (whole r = 0; r < e; r++)
             for (whole c = 0; c < e; c++) maps[(i * e + r) * e + c] = b[(r + 1) * d + c + 1];
     }

@@ -101,8 +101,8 @@ template <int N> double eliminate(const System& s) {
             lower[at_p] = s.Q[b * n + i], lower[side] = -s.F[b * n + i];
         }
         sign *= triangularise<N>(panel, n);
-        double* kept = s.stored + b * n * width;
-        for (int i = 0; i < n * width; i++) kept[i] = panel[i];
+        double* stored_panel = s.stored + b * n * width;
+        for (int i = 0; i < n * width; i++) stored_panel[i] = panel[i];
         for (int i = 0; i < n; i++) {
             double *upper = panel + i * width, *lower = panel + (n + i) * width;
             for (int c = 0; c < n; c++) upper[c] = lower[next + c], upper[first + c] = lower[first + c];
@@ -150,7 +150,7 @@ inline Four minus_with_sign(Four size, Four of) {  // size >= 0
 // V x_b + U x_0 + w p = r for the two rows of a condensed segment.
 template <class T> struct Condensed { T a00, a01, u00, u01, w0, r0, a10, a11, u10, u11, w1, r1; };
 // The rows that give a node from the first node of its segment (u), the one after it (e) and p (w): R is (1/d0, a01; 1/d1).
-template <class T> struct Kept { T d0, a01, u00, u01, e00, e01, w0, r0, d1, u10, u11, e10, e11, w1, r1; };
+template <class T> struct Reflected { T d0, a01, u00, u01, e00, e01, w0, r0, d1, u10, u11, e10, e11, w1, r1; };
 template <class T> struct Block { T b00, b01, b10, b11, d00, d01, d10, d11, q0, q1, f0, f1; };
 
 // Two Householder reflections that clear the first two columns of the lower rows of
@@ -158,7 +158,7 @@ template <class T> struct Block { T b00, b01, b10, b11, d00, d01, d10, d11, q0, 
 //     a10 a11  u10 u11   0   0   w1 r1
 //     b00 b01   0   0   d00 d01  q0 f0
 //     b10 b11   0   0   d10 d11  q1 f1
-template <class T> inline Kept<T> reflect(Condensed<T>& s, Block<T> m, T u00, T u01, T u10, T u11, T never_zero) {
+template <class T> inline Reflected<T> reflect(Condensed<T>& s, Block<T> m, T u00, T u01, T u10, T u11, T never_zero) {
     T a00 = s.a00, a01 = s.a01, w0 = s.w0, r0 = s.r0, a10 = s.a10, a11 = s.a11, w1 = s.w1, r1 = s.r1;
     T square = m.b00 * m.b00 + m.b10 * m.b10 + never_zero + a00 * a00 + a10 * a10;
     T n = minus_with_sign(root(square), a00), v = a00 - n, t = 1.0 / (n * a00 - square);  // 1 / (n v), a sum of two negative numbers
@@ -198,14 +198,14 @@ template <class T> inline Kept<T> reflect(Condensed<T>& s, Block<T> m, T u00, T 
     s = {m.d00, m.d01, g00, g01, m.q0, m.f0, m.d10, m.d11, g10, g11, m.q1, m.f1};
     return {1.0 / n, a01, u00, u01, e00, e01, w0, r0, 1.0 / n2, u10, u11, e10, e11, w1, r1};
 }
-template <class T> inline Kept<T> reflect(Condensed<T>& s, const Block<T>& m, T never_zero) {
+template <class T> inline Reflected<T> reflect(Condensed<T>& s, const Block<T>& m, T never_zero) {
     return reflect(s, m, s.u00, s.u01, s.u10, s.u11, never_zero);
 }
 
 constexpr double NEVER_ZERO = 1e-290;
 
 // A node from the first node x of its segment and the node n after it, for the particular solution (side 1) or the null one (0).
-template <class T> inline void back(const Kept<T>& k, T side, T p, T x0, T x1, T n0, T n1, T& first, T& second) {
+template <class T> inline void back(const Reflected<T>& k, T side, T p, T x0, T x1, T n0, T n1, T& first, T& second) {
     T low = (k.r1 * side - k.w1 * p - k.u10 * x0 - k.u11 * x1 - k.e11 * n1 - k.e10 * n0) * k.d1;
     first = (k.r0 * side - k.w0 * p - k.u00 * x0 - k.u01 * x1 - k.e01 * n1 - k.e00 * n0 - k.a01 * low) * k.d0;
     second = low;
@@ -222,21 +222,21 @@ inline Block<double> block_of(const System& s, whole i) {
 
 // Two halves side by side; the middle node comes last.
 inline double eliminate_halves(const System& s) {
-    auto* kept = reinterpret_cast<Kept<double>*>(s.stored);  // row i: node i from the first node of its half and the one after it
+    auto* reflected = reinterpret_cast<Reflected<double>*>(s.stored);  // row i: node i from the first node of its half and the one after it
     const whole length = s.length, middle = length / 2, size = 2 * length;
     double sign = 1.0;
     Condensed<double> state = condensed(s, 0);
     auto further = [&](Condensed<double>& c, whole i) {
-        kept[i] = reflect(c, block_of(s, i), NEVER_ZERO);
-        sign *= copysign(1.0, kept[i].d0 * kept[i].d1);
+        reflected[i] = reflect(c, block_of(s, i), NEVER_ZERO);
+        sign *= copysign(1.0, reflected[i].d0 * reflected[i].d1);
     };
     if (length > 1) {
         Condensed<double> other = condensed(s, middle);
         for (whole i = 1; i < middle; i++) further(state, i), further(other, middle + i);
         if (length % 2) further(other, length - 1);
         Block<double> last = {other.u00, other.u01, other.u10, other.u11, other.a00, other.a01, other.a10, other.a11, other.w0, other.w1, other.r0, other.r1};
-        kept[middle] = reflect(state, last, NEVER_ZERO);
-        sign *= copysign(1.0, kept[middle].d0 * kept[middle].d1);
+        reflected[middle] = reflect(state, last, NEVER_ZERO);
+        sign *= copysign(1.0, reflected[middle].d0 * reflected[middle].d1);
     }
     double* small = s.small;
     small[0] = state.u00 + state.a00, small[1] = state.u01 + s.twist * state.a01, small[2] = state.w0, small[3] = state.r0;
@@ -247,19 +247,19 @@ inline double eliminate_halves(const System& s) {
     double p = x[size], null = y[size], x0 = x[0], x1 = x[1], y0 = y[0], y1 = y[1];
     double e0 = x0, e1 = s.twist * x1, z0 = y0, z1 = s.twist * y1;
     double a0, a1, b0, b1;
-    back(kept[middle], 1.0, p, x0, x1, e0, e1, a0, a1);
-    back(kept[middle], 0.0, null, y0, y1, z0, z1, b0, b1);
+    back(reflected[middle], 1.0, p, x0, x1, e0, e1, a0, a1);
+    back(reflected[middle], 0.0, null, y0, y1, z0, z1, b0, b1);
     const double m0 = a0, m1 = a1, n0 = b0, n1 = b1;
     x[2 * middle] = m0, x[2 * middle + 1] = m1, y[2 * middle] = n0, y[2 * middle + 1] = n1;
     auto second = [&](whole j) {
-        back(kept[j], 1.0, p, m0, m1, e0, e1, e0, e1);
-        back(kept[j], 0.0, null, n0, n1, z0, z1, z0, z1);
+        back(reflected[j], 1.0, p, m0, m1, e0, e1, e0, e1);
+        back(reflected[j], 0.0, null, n0, n1, z0, z1, z0, z1);
         x[2 * j] = e0, x[2 * j + 1] = e1, y[2 * j] = z0, y[2 * j + 1] = z1;
     };
     if (length % 2) second(length - 1);
     for (whole i = middle - 1; i > 0; i--) {
-        back(kept[i], 1.0, p, x0, x1, a0, a1, a0, a1);
-        back(kept[i], 0.0, null, y0, y1, b0, b1, b0, b1);
+        back(reflected[i], 1.0, p, x0, x1, a0, a1, a0, a1);
+        back(reflected[i], 0.0, null, y0, y1, b0, b1, b0, b1);
         x[2 * i] = a0, x[2 * i + 1] = a1, y[2 * i] = b0, y[2 * i + 1] = b1;
         second(middle + i);
     }
@@ -272,8 +272,8 @@ constexpr whole LANES = 8, SHORTEST = 32;  // segments side by side; cycles shor
 inline double eliminate_lanes(const System& s) {
     const whole length = s.length, m = length / LANES, rest = length % LANES, nodes = LANES + rest, size = 2 * length;
     double* aligned = reinterpret_cast<double*>((reinterpret_cast<whole>(s.lanes) + 31) & ~whole(31));
-    auto* kept = reinterpret_cast<Kept<Four>*>(aligned);
-    double* room = aligned + m * 2 * whole(sizeof(Kept<Four>) / 8);
+    auto* reflected = reinterpret_cast<Reflected<Four>*>(aligned);
+    double* room = aligned + m * 2 * whole(sizeof(Reflected<Four>) / 8);
     double *F = room, *A = F + 2 * nodes, *D = A + 4 * nodes, *Q = D + 4 * nodes, *found = Q + 2 * nodes;
     const Four never_zero = {NEVER_ZERO, NEVER_ZERO, NEVER_ZERO, NEVER_ZERO};
     double sign = 1.0;
@@ -294,8 +294,8 @@ inline double eliminate_lanes(const System& s) {
     }
     for (whole b = 1; b < m; b++)
         for (int half = 0; half < 2; half++) {
-            Kept<Four> k = reflect(state[half], block(4 * half * m + b), never_zero);
-            kept[2 * b + half] = k;
+            Reflected<Four> k = reflect(state[half], block(4 * half * m + b), never_zero);
+            reflected[2 * b + half] = k;
             Four both = k.d0 * k.d1;
             for (int j = 0; j < 4; j++) product[half][j] *= copysign(1.0, both[j]);
         }
@@ -329,7 +329,7 @@ inline double eliminate_lanes(const System& s) {
     for (whole b = m - 1; b > 0; b--)
         for (int half = 0; half < 2; half++) {
             Ends& e = ends[half];
-            const Kept<Four>& k = kept[2 * b + half];
+            const Reflected<Four>& k = reflected[2 * b + half];
             back(k, one, ps, e.x0, e.x1, e.n0, e.n1, e.n0, e.n1);
             back(k, none, nulls, e.y0, e.y1, e.z0, e.z1, e.z0, e.z1);
             for (int j = 0; j < 4; j++) {

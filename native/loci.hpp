@@ -24,7 +24,7 @@ struct Work {
     double *residual, *base_F, *base_Q, *trial_F, *trial_Q, *point, *columns, *solutions, *directions, *borders, *row, *shifted, *scales, *values,
         *slopes, *lines, *reference, *small;
     whole* masked;
-    double *rows, *frozen, *steep, *state, *frame, *kept;
+    double *rows, *frozen, *steep, *state, *frame, *last_residual;
     whole row_size;
     double* solution(whole k) const { return solutions + k * (n + 1); }
     double* direction(whole k) const { return directions + k * (last + 1); }
@@ -230,7 +230,7 @@ inline double linearise(void* data, const double* U, double q, void* work) {
         if (!(fabs(w.values[k]) < HUGE_VAL)) return HUGE_VAL;
         largest = larger(largest, fabs(w.values[k]));
     }
-    for (whole i = 0; i < size; i++) w.kept[i] = w.residual[i];
+    for (whole i = 0; i < size; i++) w.last_residual[i] = w.residual[i];
     return largest;
 }
 
@@ -267,12 +267,12 @@ inline double bordered(void* data, void* work, const double* border, double targ
     const whole n = w.n, last = w.last, count = last - n, total = count + 1;  // tests; directions besides the particular one
     bool own = true;  // the residuals are those of the point, for which the particular direction stands
     for (whole i = 0; i < last; i++)
-        if (w.residual[i] != w.kept[i]) own = false;
+        if (w.residual[i] != w.last_residual[i]) own = false;
     for (whole k = 0; k < count; k++) w.slopes[k] = 0.0;
     if (!own) {
         w.state[SIGN] = particular(d, w);
         slopes_along(d, w, w.direction(0), w.slopes);
-        for (whole i = 0; i < last; i++) w.kept[i] = NAN;
+        for (whole i = 0; i < last; i++) w.last_residual[i] = NAN;
     }
     double across = 0.0, *small = w.small;
     for (whole i = 0; i <= last; i++) across += border[i] * w.direction(0)[i];

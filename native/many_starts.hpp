@@ -141,7 +141,7 @@ void positions(const Machine& machine, whole events, const signed char *codes, c
     constexpr int NODE = Machine::STATE - 4;
     const double first = nodes[0];
     double state[Machine::STATE] = {}, out[4], before = -1.0, begins = 0.0;
-    whole segment = 0, known = -1;
+    whole segment = 0, loaded = -1;
     for (whole i = 0; i < count; i++) {
         double wanted = double(i) * (length / double(count)) - first;
         wanted -= floor(wanted / length) * length;
@@ -154,8 +154,8 @@ void positions(const Machine& machine, whole events, const signed char *codes, c
             segment++;
             begins = most(begins, nodes[segment * NODE] - first);
         }
-        if (segment != known) state_of(machine, codes[segment], modes[segment], nodes + segment * NODE, left, right, state);
-        known = segment;
+        if (segment != loaded) state_of(machine, codes[segment], modes[segment], nodes + segment * NODE, left, right, state);
+        loaded = segment;
         machine.sample(state, wanted - begins, out);
         w[i] = out[0];
     }

@@ -18,7 +18,7 @@ struct Frame {
     whole unknowns, row;
     Metric metric;
     double noise;
-    double *u, *border, *step, *tangent, *guess, *known;  // room: (N,), four (N + 1,), Bracket
+    double *u, *border, *step, *tangent, *guess, *bracket;  // room: (N,), four (N + 1,), Bracket
     const Solution* solution;
 };
 
@@ -47,12 +47,12 @@ inline double plane(const double* tangent, const double* u, double p, Metric m, 
 // Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p. The arc between the two points is as long as
 // their distance times 1 + angle^2/24 (exact to fourth order).
 inline double extrapolate(const double* points, const double* values, const double* tangents, whole i, double h, Metric m, double* u, whole n) {
-    const double *point = points + (i - 1) * n, *here = tangents + (i - 1) * (n + 1);
+    const double *point = points + (i - 1) * n, *tangent = tangents + (i - 1) * (n + 1);
     if (i >= 2) {
-        const double *old = point - n, *there = here - (n + 1);
-        double change = values[i - 1] - values[i - 2], bend_p = here[n] - there[n], chord = 0.0, bend = 0.0;
+        const double *old = point - n, *old_tangent = tangent - (n + 1);
+        double change = values[i - 1] - values[i - 2], bend_p = tangent[n] - old_tangent[n], chord = 0.0, bend = 0.0;
         for (whole j = 0; j < n; j++) {
-            double a = point[j] - old[j], b = here[j] - there[j];
+            double a = point[j] - old[j], b = tangent[j] - old_tangent[j];
             chord += a * a, bend += b * b;
         }
         double turn = m.of_parameter * bend_p * bend_p + m.of_unknowns * bend;
@@ -60,12 +60,12 @@ inline double extrapolate(const double* points, const double* values, const doub
         if (d > 0.0 && turn < 1.0 && h < 4.0 * d) {
             double share = h / d, by_d = 1.0 / d;
             auto ahead = [=](double a, double b, double mean) { return h * (a + share * (2.0 * a + b - 3.0 * mean + share * (a + b - 2.0 * mean))); };
-            for (whole j = 0; j < n; j++) u[j] = point[j] + ahead(here[j], there[j], (point[j] - old[j]) * by_d);
-            return values[i - 1] + ahead(here[n], there[n], change * by_d);
+            for (whole j = 0; j < n; j++) u[j] = point[j] + ahead(tangent[j], old_tangent[j], (point[j] - old[j]) * by_d);
+            return values[i - 1] + ahead(tangent[n], old_tangent[n], change * by_d);
         }
     }
-    for (whole j = 0; j < n; j++) u[j] = point[j] + h * here[j];
-    return values[i - 1] + h * here[n];
+    for (whole j = 0; j < n; j++) u[j] = point[j] + h * tangent[j];
+    return values[i - 1] + h * tangent[n];
 }
 // Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p.
 inline double hermite(const double* chord, double s, double* u, double* guess, whole n) {
@@ -341,7 +341,7 @@ inline Outcome points(Frame& f, const double* chord, double start, double length
                       const double* border, const double* along, whole max_sweeps, const Found& found, const Aim& aim) {
     const Table& table = *f.table;
     const whole n = f.unknowns;
-    auto& known = *reinterpret_cast<Bracket*>(f.known);
+    auto& bracket = *reinterpret_cast<Bracket*>(f.bracket);
     const bool searching = aim.what != NOTHING;
     Outcome outcome = NOWHERE;
     whole stage = 0, place = 0;
@@ -406,19 +406,19 @@ inline Outcome points(Frame& f, const double* chord, double start, double length
                 double least = smaller(fabs(first_value), fabs(value)), most = larger(fabs(first_value), fabs(value));
                 if (aim.anyway == 0 && least > f.solution->solved * most) return NOWHERE;  // an end that is the zero itself may have either sign, by roundoff
                 outcome = AT_END;
-                known.x1 = fabs(first_value) < fabs(value) ? 0.0 : 1.0;
-                if (known.x1 == s) return outcome;
+                bracket.x1 = fabs(first_value) < fabs(value) ? 0.0 : 1.0;
+                if (bracket.x1 == s) return outcome;
                 stage = 3, s = 0.0;
                 continue;
             }
             stage = 2, outcome = PASSED;
-            ahead = begin(known, 0.0, 1.0, first_value, value, first_p, p, known.tolerance, known.jump);
-        } else ahead = follow(known, f.solution->jump, s, value, p);
+            ahead = begin(bracket, 0.0, 1.0, first_value, value, first_p, p, bracket.tolerance, bracket.jump);
+        } else ahead = follow(bracket, f.solution->jump, s, value, p);
         if (ahead == ahead) {
             s = ahead;
             continue;
         }
-        double end = best(known);
+        double end = best(bracket);
         if (end == s && sweeps >= 0) return outcome;
         stage = 3, s = end;
     }

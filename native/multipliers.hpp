@@ -96,12 +96,12 @@ inline int deficiency(const double* A, whole length, int n) {
 struct Factor { double m00, m01, m10, m11, p00, p01, p10, p11, power, norm; };  // M_i, the product before it, its exponent and size
 
 // The error bound, and its part that comes from rounding the factors themselves.
-inline double bound_of_two(whole length, double twist, int power, const Factor* kept, double& inherent) {
+inline double bound_of_two(whole length, double twist, int power, const Factor* stored, double& inherent) {
     double s00 = 1.0, s01 = 0.0, s10 = 0.0, s11 = twist, bound = 0.0;
     int behind = 0;
     inherent = 0.0;
     for (whole i = length - 1; i >= 0; i--) {
-        const Factor& f = kept[i];
+        const Factor& f = stored[i];
         double a00 = fabs(f.m00), a01 = fabs(f.m01), a10 = fabs(f.m10), a11 = fabs(f.m11);
         double weight = a00 * (fabs(f.p00 * s00) + fabs(f.p01 * s10)) + a01 * (fabs(f.p10 * s00) + fabs(f.p11 * s10));
         weight += a10 * (fabs(f.p00 * s01) + fabs(f.p01 * s11)) + a11 * (fabs(f.p10 * s01) + fabs(f.p11 * s11));
@@ -129,10 +129,10 @@ inline double bound_of_two(whole length, double twist, int power, const Factor* 
 }
 
 // A larger bound that costs less, from sums of absolute entries.
-inline double simple_bound(whole length, double twist, const Factor* kept) {
+inline double simple_bound(whole length, double twist, const Factor* stored) {
     double s00 = 1.0, s01 = 0.0, s10 = 0.0, s11 = twist, norm = 2.0, bound = 0.0;
     for (whole i = length - 1; i >= 0; i--) {
-        const Factor& f = kept[i];
+        const Factor& f = stored[i];
         bound += (fabs(f.m00) + fabs(f.m01) + fabs(f.m10) + fabs(f.m11)) * (f.norm * norm);
         double t00 = s00 * f.m00 + s01 * f.m10, t01 = s00 * f.m01 + s01 * f.m11;
         double t10 = s10 * f.m00 + s11 * f.m10, t11 = s10 * f.m01 + s11 * f.m11;
@@ -142,7 +142,7 @@ inline double simple_bound(whole length, double twist, const Factor* kept) {
     return bound;
 }
 
-inline Certainty product_of_two(const double* A, const double* D, whole length, double twist, double* re, double* im, Factor* kept, double& det, int& det_power) {
+inline Certainty product_of_two(const double* A, const double* D, whole length, double twist, double* re, double* im, Factor* stored, double& det, int& det_power) {
     double p00 = 1.0, p01 = 0.0, p10 = 0.0, p11 = 1.0, norm = 2.0;
     int power = 0;
     det = 1.0, det_power = 0;
@@ -153,7 +153,7 @@ inline Certainty product_of_two(const double* A, const double* D, whole length, 
         double m00 = (D[3] * A[0] - D[1] * A[2]) * inverse, m01 = (D[3] * A[1] - D[1] * A[3]) * inverse;
         double m10 = (D[0] * A[2] - D[2] * A[0]) * inverse, m11 = (D[0] * A[3] - D[2] * A[1]) * inverse;
         det *= (A[1] * A[2] - A[0] * A[3]) * inverse;
-        kept[i] = {m00, m01, m10, m11, p00, p01, p10, p11, double(power), norm};
+        stored[i] = {m00, m01, m10, m11, p00, p01, p10, p11, double(power), norm};
         double t00 = m00 * p00 + m01 * p10, t10 = m10 * p00 + m11 * p10, t01 = m00 * p01 + m01 * p11, t11 = m10 * p01 + m11 * p11;
         p00 = t00, p10 = t10, p01 = t01, p11 = t11;
         norm = fabs(p00) + fabs(p01) + fabs(p10) + fabs(p11);
@@ -177,8 +177,8 @@ inline Certainty product_of_two(const double* A, const double* D, whole length, 
     double disc = half * half - relative, largest = half, modulus;
     if (disc >= 0.0) largest = half + copysign(sqrt(disc), half), modulus = fabs(largest);
     else modulus = sqrt(relative);
-    if (power != 0 || !(simple_bound(length, twist, kept) <= CERTIFIED * modulus / UNIT_ROUNDOFF)) {
-        double inherent, bound = bound_of_two(length, twist, power, kept, inherent), error = bound * UNIT_ROUNDOFF;
+    if (power != 0 || !(simple_bound(length, twist, stored) <= CERTIFIED * modulus / UNIT_ROUNDOFF)) {
+        double inherent, bound = bound_of_two(length, twist, power, stored, inherent), error = bound * UNIT_ROUNDOFF;
         if (!(error <= CERTIFIED * modulus || (bound <= EXCESS * inherent && error <= PASSABLE * modulus))) return UNCERTAIN;
     }
     if (disc >= 0.0) {
@@ -193,13 +193,13 @@ inline Certainty product_of_two(const double* A, const double* D, whole length, 
 }
 
 // Two multipliers of different size: the larger one by carrying its eigenvector round the cycle until it settles.
-inline Certainty dominant_of_two(whole length, double twist, double* re, double* im, const Factor* kept, double det, int det_power) {
+inline Certainty dominant_of_two(whole length, double twist, double* re, double* im, const Factor* stored, double det, int det_power) {
     double x = 0.8, y = 0.6, before = 2.0;
     for (int sweep = 0; sweep < 40; sweep++) {
         double x0 = x, y0 = y, value = 1.0;
         int power = 0;
         for (whole i = 0; i < length; i++) {
-            double a = kept[i].m00 * x + kept[i].m01 * y, b = kept[i].m10 * x + kept[i].m11 * y, size = sqrt(a * a + b * b);
+            double a = stored[i].m00 * x + stored[i].m01 * y, b = stored[i].m10 * x + stored[i].m11 * y, size = sqrt(a * a + b * b);
             if (!(0.0 < size && size < HUGE_VAL)) return UNCERTAIN;
             double by = 1.0 / size;
             x = a * by, y = b * by, value *= size;
@@ -610,11 +610,11 @@ inline bool periodic_multipliers(const double* A, const double* D, whole length,
 inline bool multipliers(const double* A, const double* D, whole length, int n, double twist, double* re, double* im, double* scratch) {
     Certainty found;
     if (n == 2) {
-        auto* kept = reinterpret_cast<Factor*>(scratch);
+        auto* stored = reinterpret_cast<Factor*>(scratch);
         double det;
         int det_power;
-        found = product_of_two(A, D, length, twist, re, im, kept, det, det_power);
-        if (found == UNCERTAIN) found = dominant_of_two(length, twist, re, im, kept, det, det_power);
+        found = product_of_two(A, D, length, twist, re, im, stored, det, det_power);
+        if (found == UNCERTAIN) found = dominant_of_two(length, twist, re, im, stored, det, det_power);
     } else found = product_of_any(A, D, length, n, twist, re, im, scratch);
     if (found == CERTAIN) return true;
     if (found == UNDEFINED) {

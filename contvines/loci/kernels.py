@@ -286,7 +286,7 @@ def locus_linearise(data, U, q, work):
     point[:] = place + work.directions[0]
     tests(data, work, point[:n], data.unit * point[n], point[size], work.values)
     residuals[n:] = work.values[: size - n]
-    work.kept[:] = residuals
+    work.last_residual[:] = residuals
     return max(largest, *map(abs, residuals[n:].tolist())) if np.isfinite(residuals[n:]).all() else math.inf
 
 
@@ -297,10 +297,10 @@ def locus_bordered(data, work, border, target, step, tangent):
     count = len(residuals) - n  # number of tests; besides the particular direction there are count + 1
     others, slopes = directions[1 : count + 2], np.zeros(count)
     # if the caller has changed the residuals, the particular direction must be computed again
-    if (residuals != work.kept).any():
+    if (residuals != work.last_residual).any():
         particular(data, work)
         slopes = slopes_along(data, work, directions[0])
-        work.kept[:] = math.nan
+        work.last_residual[:] = math.nan
     if state[VALID] < 1.0:
         for steep, direction in zip(work.steep, others):
             steep[:count] = slopes_along(data, work, direction)

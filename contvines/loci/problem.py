@@ -84,7 +84,7 @@ class Work:
         self.steep = np.zeros((3, tests))
         self.state = np.array([-1.0, 1.0, 0.0, LONGEST])
         self.frame = np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n)
-        self.kept = np.zeros(size)
+        self.last_residual = np.zeros(size)
         if locus.compiled:
             arrays = [part for part in vars(self).values() if isinstance(part, np.ndarray)]
             places = memory_of(self.base), memory_of(self.trial)
