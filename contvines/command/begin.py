@@ -116,11 +116,11 @@ def _by_task() -> str:
 def _cite() -> str:
     from importlib.metadata import metadata
 
-    about = metadata("contvines")
-    author = about["Author"] or about["Author-email"] or "The contvines developers"
+    package = metadata("contvines")
+    author = package["Author"] or package["Author-email"] or "The contvines developers"
     return f"""@software{{contvines,
   title = {{contvines: continuation and bifurcation analysis of motions with impacts and friction}},
-  author = {{{{{author}}}}}, year = {{2026}}, version = {{{about["Version"]}}}
+  author = {{{{{author}}}}}, year = {{2026}}, version = {{{package["Version"]}}}
 }}
 The model of the absorbers: Youssef, Karoui, Leine, doi:10.48550/arXiv.2505.04420."""
 
@@ -205,17 +205,17 @@ def doctor(json: JsonOption = False) -> None:
     """
     from ..journal import provenance
 
-    made = provenance()
+    versions = provenance()
     extras = {name: all(find_spec(part) for part in parts) for name, parts in EXTRAS.items()}
     test = self_test()
     if json:
-        tell(made, {**made, "extras": extras, "self_test": test})
+        tell(versions, {**versions, "extras": extras, "self_test": test})
     else:
-        for name, value in made.items():
+        for name, value in versions.items():
             typer.echo(f"{name:>10}  {value}")
-        for name, there in extras.items():
-            way = "installed" if there else f"missing; {pip_install(name)} adds it"
-            typer.echo(f"{name:>10}  {way}")
+        for name, installed in extras.items():
+            remark = "installed" if installed else f"missing; {pip_install(name)} adds it"
+            typer.echo(f"{name:>10}  {remark}")
         verdict = "passed" if test["passed"] else "FAILED"
         typer.echo(
             f" self-test  {verdict}: fold at amplitude {test['found']:.12g}, closed form {test['closed_form']:.12g}"
@@ -294,7 +294,7 @@ def study_schema() -> dict[str, Any]:
     from .schema import FlowSections, PageSections, catalogue_model
 
     kinds = [_titled(inlined(catalogue_model(name)), f"the machine {name}") for name in NAMES]
-    kinds += [made for made in map(_physical, NAMES) if made is not None]
+    kinds += [schema for schema in map(_physical, NAMES) if schema is not None]
     kinds = [_with_conditions(kind) for kind in kinds]
     own = [
         _own(_with_units(inlined(PageSections)), "a machine of a Python file"),
@@ -308,12 +308,12 @@ def study_schema() -> dict[str, Any]:
     }
 
 
-def _titled(made: dict[str, Any], title: str) -> dict[str, Any]:
-    sections = {"model": made["properties"].pop("model") | {"title": title}, **made["properties"]}
-    return made | {"title": title, "properties": sections}
+def _titled(schema: dict[str, Any], title: str) -> dict[str, Any]:
+    sections = {"model": schema["properties"].pop("model") | {"title": title}, **schema["properties"]}
+    return schema | {"title": title, "properties": sections}
 
 
-def _with_conditions(made: dict[str, Any]) -> dict[str, Any]:
+def _with_conditions(schema: dict[str, Any]) -> dict[str, Any]:
     """Extend the schema of a study by parameters that are tables over a condition."""
     row = {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
     table = {
@@ -323,7 +323,7 @@ def _with_conditions(made: dict[str, Any]) -> dict[str, Any]:
         "minProperties": 1,
         "maxProperties": 1,
     }
-    model = made["properties"]["model"]
+    model = schema["properties"]["model"]
     entries = {
         name: kind
         if name in ("name", "units", "unusual", "contact_time")
@@ -335,8 +335,8 @@ def _with_conditions(made: dict[str, Any]) -> dict[str, Any]:
         "description": "values of conditions",
         "additionalProperties": {"type": "number"},
     }
-    sections = {**made["properties"], "model": model | {"properties": entries}, "conditions": conditions}
-    return made | {"properties": sections}
+    sections = {**schema["properties"], "model": model | {"properties": entries}, "conditions": conditions}
+    return schema | {"properties": sections}
 
 
 def _physical(name: str) -> dict[str, Any] | None:
@@ -350,7 +350,7 @@ def _physical(name: str) -> dict[str, Any] | None:
     from .schema import StudySections, study_model
 
     try:
-        known = tables(model_class(name)).quantities
+        quantities = tables(model_class(name)).quantities
     except QuantityError:
         return None
     fields: dict[str, Any] = {
@@ -358,74 +358,74 @@ def _physical(name: str) -> dict[str, Any] | None:
             str if entry.unit else str | float,
             Field(description=f"{entry.meaning}; for example {entry.example}"),
         ]
-        for key, entry in known.items()
+        for key, entry in quantities.items()
     }
     contact = f"{CONTACT.meaning}; for example {CONTACT.example}"
     settings: dict[str, Any] = {
         "name": (Literal[name], ...),  # type: ignore[valid-type]
         "units": (Literal["si"] | None, None),
         "unusual": (Annotated[bool, Field(description="allow sizes that nobody builds")], False),
-        **{key: (fields[key] | None, entry.default) for key, entry in known.items()},
+        **{key: (fields[key] | None, entry.default) for key, entry in quantities.items()},
         CONTACT.name: (Annotated[str | None, Field(description=contact)], None),
     }
-    made = _with_units(inlined(study_model(StudySections, settings, fields)))
-    said = {"required": ["units"]}
-    return _titled(made, f"the machine {name} in physical units") | {
-        "anyOf": [said, {"properties": {"model": said}}]
+    schema = _with_units(inlined(study_model(StudySections, settings, fields)))
+    in_si = {"required": ["units"]}
+    return _titled(schema, f"the machine {name} in physical units") | {
+        "anyOf": [in_si, {"properties": {"model": in_si}}]
     }
 
 
-def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
+def _own(schema: dict[str, Any], title: str) -> dict[str, Any]:
     """Restrict a schema to studies of a Python file, by the form of the model's name; the parameters are known only after the file has run."""
     from orbits.machines.names import PAGES, STRUCTURE
 
-    about = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join([STRUCTURE, *PAGES])}'
-    name = {"type": "string", "pattern": "|".join([r"\.py", STRUCTURE, *PAGES]), "description": about}
-    made["properties"]["model"] = {"type": "object", "properties": {"name": name}, "required": ["name"]}
-    made["properties"]["start"]["additionalProperties"] = True
-    return made | {"title": title, "required": ["model", *made["required"]]}
+    meaning = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join([STRUCTURE, *PAGES])}'
+    name = {"type": "string", "pattern": "|".join([r"\.py", STRUCTURE, *PAGES]), "description": meaning}
+    schema["properties"]["model"] = {"type": "object", "properties": {"name": name}, "required": ["name"]}
+    schema["properties"]["start"]["additionalProperties"] = True
+    return schema | {"title": title, "required": ["model", *schema["required"]]}
 
 
 def inlined(model: type[BaseModel]) -> dict[str, Any]:
     """Return the schema of a pydantic model with references resolved, and without null, which TOML lacks."""
-    made = model.model_json_schema(by_alias=True)
-    shared = made.pop("$defs", {})
+    schema = model.model_json_schema(by_alias=True)
+    shared = schema.pop("$defs", {})
 
-    def told(value: Any) -> Any:
+    def resolved(value: Any) -> Any:
         if isinstance(value, list):
-            return [told(entry) for entry in value]
+            return [resolved(entry) for entry in value]
         if not isinstance(value, dict):
             return value
-        kept = {k: told(v) for k, v in value.items() if not _said_already(k, v)}
-        if "$ref" in kept:
-            kept = told(shared[kept.pop("$ref").rpartition("/")[2]]) | kept
-        choices = [entry for entry in kept.get("anyOf", ()) if entry != {"type": "null"}]
+        entries = {k: resolved(v) for k, v in value.items() if not _is_redundant(k, v)}
+        if "$ref" in entries:
+            entries = resolved(shared[entries.pop("$ref").rpartition("/")[2]]) | entries
+        choices = [entry for entry in entries.get("anyOf", ()) if entry != {"type": "null"}]
         if len(choices) == 1:
-            kept = choices[0] | {k: v for k, v in kept.items() if k != "anyOf"}
+            entries = choices[0] | {k: v for k, v in entries.items() if k != "anyOf"}
         elif choices:
-            kept["anyOf"] = choices
-        return kept
+            entries["anyOf"] = choices
+        return entries
 
-    return told(made)
+    return resolved(schema)
 
 
-def _said_already(key: str, value: object) -> bool:
+def _is_redundant(key: str, value: object) -> bool:
     """Whether an entry is useless in an editor: titles made from names, defaults that are None or whole sections."""
     return (key == "title" and isinstance(value, str)) or (
         key == "default" and (value is None or isinstance(value, dict))
     )
 
 
-def _with_units(made: dict[str, Any]) -> dict[str, Any]:
+def _with_units(schema: dict[str, Any]) -> dict[str, Any]:
     """Allow ``units = "si"`` in the schema of a study, and texts with a unit in all its lists of numbers, except in guesses."""
 
-    def told(value: Any) -> Any:
+    def extended(value: Any) -> Any:
         if isinstance(value, list):
-            return [told(entry) for entry in value]
+            return [extended(entry) for entry in value]
         if not isinstance(value, dict):
             return value
         if value.get("items") == {"type": "number"}:
             return value | {"items": {"type": ["number", "string"]}}
-        return {k: v if k == "guess" else told(v) for k, v in value.items()}
+        return {k: v if k == "guess" else extended(v) for k, v in value.items()}
 
-    return told(made | {"properties": made["properties"] | {"units": {"const": "si"}}})
+    return extended(schema | {"properties": schema["properties"] | {"units": {"const": "si"}}})

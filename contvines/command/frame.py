@@ -56,8 +56,8 @@ def place_of(output: Path | None, source: Path, ending: str) -> Path:
     """
     path, kind = output or beside(source, ending), ending.rpartition(".")[2]
     if path.resolve() == source.resolve():
-        what = "the study" if source.suffix == ".toml" else "the file"
-        raise ValueError(f"{path}: this is {what} itself; choose another name with -o.")
+        noun = "the study" if source.suffix == ".toml" else "the file"
+        raise ValueError(f"{path}: this is {noun} itself; choose another name with -o.")
     if kind == "vines":
         refuse_place(path)
         refuse_ending(path, kind)
@@ -98,13 +98,13 @@ def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...
         if fresh:
             _fold(target)
             try:
-                aside = set_aside(target, *others, *logs)
+                backup = set_aside(target, *others, *logs)
             except OSError as error:
                 raise ValueError(
                     f"{target}: cannot be set aside ({error.strerror}); choose another name with -o."
                 ) from None
-            if aside is not None:
-                say(f"{target} is set aside as {aside}", quiet)
+            if backup is not None:
+                say(f"{target} is set aside as {backup}", quiet)
         yield
         if any(log.exists() for log in logs):
             _fold(target)
@@ -227,28 +227,30 @@ def point_of(graph: Graph | Chart, label: str) -> tuple[Any, int | None]:
         If there is no such label, or no such point.
     """
     name, _, place = label.partition(":")
-    thing: Any = graph[name]
+    found: Any = graph[name]
     if not place:
-        return thing, None
-    if not hasattr(thing, "__len__"):
+        return found, None
+    if not hasattr(found, "__len__"):
         raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
-    last = len(thing) - 1
+    last = len(found) - 1
     if not (place.isdigit() and int(place) <= last):
         raise ValueError(
             f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}."
         )
-    return thing, int(place)
+    return found, int(place)
 
 
 def check_special(graph: Graph, file: Path, label: str) -> None:
     """Raise a ValueError if a label is not that of a special point."""
     if label not in graph.special:
-        what = "is a branch" if label in graph.branches else "is no label of it"
-        alike = [name for name in graph.special if name.rstrip("0123456789") == label.rstrip("0123456789")]
-        known = [*(alike or graph.special)]
-        more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
+        fault = "is a branch" if label in graph.branches else "is no label of it"
+        same_kind = [
+            name for name in graph.special if name.rstrip("0123456789") == label.rstrip("0123456789")
+        ]
+        labels = [*(same_kind or graph.special)]
+        more = f" and {len(labels) - MOST_NAMED} more" if len(labels) > MOST_NAMED else ""
         raise ValueError(
-            f"{file}: {label} {what}; its special points are {', '.join(known[:MOST_NAMED]) or 'none'}{more}."
+            f"{file}: {label} {fault}; its special points are {', '.join(labels[:MOST_NAMED]) or 'none'}{more}."
         )
 
 
@@ -304,8 +306,8 @@ def tell_result(found: Graph | Chart, file: Path, details: bool) -> None:
         from ..graph.table import summary
 
         whole = f"{size} branches, {len(found.special)} special points"
-        known = any(branch.stable is not None for branch in found.branches.values())
-        first = summary(found, brief=brief) if known else ""
+        judged = any(branch.stable is not None for branch in found.branches.values())
+        first = summary(found, brief=brief) if judged else ""
     else:
         from ..loci.table import chart_summary
 

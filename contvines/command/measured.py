@@ -53,22 +53,22 @@ def measured(path: Path, wanted: Mapping[str, str]) -> list[np.ndarray]:
     ]
 
 
-def _factor(place: str, head: str, what: str, unit: str) -> float:
+def _factor(place: str, head: str, quantity: str, unit: str) -> float:
     match = _UNIT.search(head)
-    said = next((part.strip() for part in match.groups() if part), "") if match else ""
-    if not said or said in ("-", "1"):
+    text = next((part.strip() for part in match.groups() if part), "") if match else ""
+    if not text or text in ("-", "1"):
         return 1.0
     place = f"{place}, {head!r},"
     if not unit:
         raise ValueError(
-            f"{place} names a unit, but {what} is a plain number here: the study has no units; leave it out, "
+            f"{place} names a unit, but {quantity} is a plain number here: the study has no units; leave it out, "
             'or give the study units = "si".'
         )
-    if said == "g" and unit == "m/s^2":
+    if text == "g" and unit == "m/s^2":
         return STANDARD_GRAVITY
-    factor = units.size(said, unit)
+    factor = units.size(text, unit)
     if factor is None:
-        raise ValueError(f"{place} says {said!r}, which is no unit of this {what}; expected {unit}.")
+        raise ValueError(f"{place} says {text!r}, which is no unit of this {quantity}; expected {unit}.")
     return factor
 
 
@@ -203,15 +203,15 @@ def _rounded(value: float, error: float) -> tuple[str, str]:
     return f"{value:.{digits}g}", f"{error:.2g}"
 
 
-def loads_rows(impulse: float, impacts: int, contact_time: float | None, shown: Mapping[str, str]) -> Rows:
+def loads_rows(impulse: float, impacts: int, contact_time: float | None, units: Mapping[str, str]) -> Rows:
     """Return the rows about the hardest impact, whose impulse is in the study's unit."""
     if not impacts:
         return []
-    rows = [("impulse", impulse, shown.get("impulse", ""), "largest impulse of an impact")]
+    rows = [("impulse", impulse, units.get("impulse", ""), "largest impulse of an impact")]
     if contact_time is not None:
-        shape = f"half a sine over {contact_time:g} {shown.get('contact_time', '')}".rstrip()
+        shape = f"half a sine over {contact_time:g} {units.get('contact_time', '')}".rstrip()
         words = f"of that impact, if its force is {shape}"
         rows.append(
-            ("peak_force", math.pi * impulse / (2.0 * contact_time), shown.get("peak_force", ""), words)
+            ("peak_force", math.pi * impulse / (2.0 * contact_time), units.get("peak_force", ""), words)
         )
     return rows

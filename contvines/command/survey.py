@@ -71,7 +71,7 @@ def survey(
     from .compose import check_shaken
     from .study import read_study
 
-    read, wish = read_study(study), None
+    read, goal = read_study(study), None
     check_shaken(read, read.survey.vary)
     target = place_of(output, study, "-survey.nc")
     check_target(target.with_suffix(".csv"), "csv")
@@ -83,11 +83,11 @@ def survey(
     if best is not None:
         from .best import asking, check_over, read_goal
 
-        wish = read_goal(best)
+        goal = read_goal(best)
         check_over(read, over or [])
-        read = asking(read, wish.outcome)
+        read = asking(read, goal.outcome)
     found = surveyed(read, target, workers, cluster, fresh, quiet)
-    if wish is not None:
+    if goal is not None:
         from .best import tell_choice
 
         tell_choice(read, str(best), covered, found, json_, quiet, plot)
@@ -107,8 +107,8 @@ def as_json(found: Survey) -> dict[str, Any]:
         }
         for i, values in enumerate(found.plan.systems())
     ]
-    said: dict[str, Any] = {"units": found.units} if found.units else {}
-    return {"parameters": list(found.plan.names), "outcomes": list(found.columns), **said, "rows": rows}
+    units: dict[str, Any] = {"units": found.units} if found.units else {}
+    return {"parameters": list(found.plan.names), "outcomes": list(found.columns), **units, "rows": rows}
 
 
 def surveyed(
@@ -134,9 +134,9 @@ def surveyed(
         ways_of,
     )
 
-    (plan, model), outcomes, about = plan_and_machine(study), outcomes_of(study), asked_of(study)
+    (plan, model), outcomes, asked = plan_and_machine(study), outcomes_of(study), asked_of(study)
     over, within, journal = study.parameter, study.within, journal_of(target)
-    digest = digest_of(plan, over, within, about)
+    digest = digest_of(plan, over, within, asked)
     with held(target, quiet, fresh, (target.with_suffix(".csv"), journal)):
         refuse_another(target, {"contvines": "unfinished survey", "of": digest})
         if target.exists():
@@ -153,7 +153,7 @@ def surveyed(
         with without_main(), interruptible(note), refused(str(study.path)):
             found = run(
                 family_of(study, model), plan, over=over, within=within, outcomes=outcomes, workers=workers, cluster=cluster, journal=journal,
-                units=units_of(study, model), about=about, progress=not quiet, **ways_of(study), **study.options,
+                units=units_of(study, model), about=asked, progress=not quiet, **ways_of(study), **study.options,
             )  # fmt: skip
         try:
             found.save(target)
@@ -170,11 +170,11 @@ def without_main() -> Iterator[None]:
     import sys
 
     main = sys.modules["__main__"]
-    kept = {name: getattr(main, name, None) for name in ("__file__", "__spec__")}
-    for name in kept:
+    saved = {name: getattr(main, name, None) for name in ("__file__", "__spec__")}
+    for name in saved:
         setattr(main, name, None)
     try:
         yield
     finally:
-        for name, value in kept.items():
+        for name, value in saved.items():
             setattr(main, name, value)

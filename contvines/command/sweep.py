@@ -79,7 +79,7 @@ def sweep(
     draw(plot, lambda: picture(rows, read, graph, size), quiet)
 
 
-def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]:
+def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[StoredRow]:
     """Compute all rows of a sweep; each is written to the file at once, and rows of an unfinished run are reused."""
     import numpy as np
 
@@ -103,7 +103,7 @@ def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]
             if count is not None:
                 count(row)
 
-        then = "the same command goes on from there, from the state reached" if file.lasting else "no more"
+        advice = "the same command goes on from there, from the state reached" if file.lasting else "no more"
         try:
             if done < len(values):
                 simulate(
@@ -118,12 +118,12 @@ def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]
                 )
         except KeyboardInterrupt:
             raise Interrupted(
-                f"{len(file.found)} of {len(values)} values are kept in {target}; {then}"
+                f"{len(file.found)} of {len(values)} values are kept in {target}; {advice}"
             ) from None
     return file.found
 
 
-def _summary(rows: list[Kept], study: Study) -> str:
+def _summary(rows: list[StoredRow], study: Study) -> str:
     """Return the summary of a sweep: a line for each interval with the same attractor, and one about modulation."""
     from itertools import groupby
 
@@ -162,16 +162,16 @@ def graph_beneath(path: Path, study: Study) -> Graph:
     graph = load_file(path)
     if graph.parameter != study.parameter:
         raise ValueError(f"{path} continues in {graph.parameter}, the study sweeps over {study.parameter}.")
-    over, model, theirs = study.parameter, study.model, _machine_of(graph)
+    over, model, graph_values = study.parameter, study.model, _machine_of(graph)
     vector = model.vector_at(over, study.parameters[over], study.loose)
-    ours = {"name": model.name, **model.named(vector)}
+    own_values = {"name": model.name, **model.named(vector)}
     close = {"rel_tol": Settings.rounding, "abs_tol": TINY}
     differing = [
-        f"{name} = {there!r} there and {own!r} in the study"
-        for name, own in ours.items()
+        f"{name} = {other!r} there and {own!r} in the study"
+        for name, own in own_values.items()
         if name != over
-        and (there := theirs.get(name, own)) != own
-        and (isinstance(own, str) or not math.isclose(own, there, **close))
+        and (other := graph_values.get(name, own)) != own
+        and (isinstance(own, str) or not math.isclose(own, other, **close))
     ]
     if differing:
         raise ValueError(
@@ -186,18 +186,18 @@ def _machine_of(graph: Graph) -> dict[str, Any]:
     from orbits.flows import machine_of
     from orbits.machines.names import NAMES
 
-    known = dict(graph.model)
-    if "page" in known or known.get("name") not in NAMES:
-        return known
+    model = dict(graph.model)
+    if "page" in model or model.get("name") not in NAMES:
+        return model
     every = (branch.description.get("params") for branch in graph.branches.values())
     params = next((params for params in every if params is not None), None)
     if params is None:
-        return known
-    return {"name": known["name"], **dict(zip(machine_of(known).parameter_names, params))}
+        return model
+    return {"name": model["name"], **dict(zip(machine_of(model).parameter_names, params))}
 
 
 def picture(
-    rows: list[Kept], study: Study, graph: Graph | None, size: tuple[float, float] | None = None
+    rows: list[StoredRow], study: Study, graph: Graph | None, size: tuple[float, float] | None = None
 ) -> Figure:
     """Draw the attractors of a sweep as dots, over a graph if there is one."""
     from orbits.flows import flow_of
@@ -236,15 +236,15 @@ def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:
 
     found = []
     for branch in graph.branches.values():
-        about = branch.description
-        if about.get("events") and len(branch) > 1:
-            word = Word.described(about)
+        data = branch.description
+        if data.get("events") and len(branch) > 1:
+            word = Word.described(data)
             if word.impacts:
                 found.append((word, branch.values, measured(branch, "B")))
     return found
 
 
-def _drawn_impact(row: Kept, lines: list[tuple[Any, Any, Any]]) -> int | None:
+def _drawn_impact(row: StoredRow, lines: list[tuple[Any, Any, Any]]) -> int | None:
     """Return the index of the impact of a motion whose B the line of its branch shows; None if no branch has its word.
 
     The motion, a rotation of its word or its mirror image lies on the branch: the line's impact is the one nearest to the line.
@@ -263,14 +263,14 @@ def _drawn_impact(row: Kept, lines: list[tuple[Any, Any, Any]]) -> int | None:
             i = np.flatnonzero((values[:-1] - row.value) * (values[1:] - row.value) <= 0.0)
             width = values[i + 1] - values[i]
             share = (row.value - values[i]) / np.where(width == 0.0, 1.0, width)
-            for there in heights[i] + share * (heights[i + 1] - heights[i]):
-                candidates += [(abs(there - dot), place) for place, dot in enumerate(row.dots)]
+            for height in heights[i] + share * (heights[i + 1] - heights[i]):
+                candidates += [(abs(height - dot), place) for place, dot in enumerate(row.dots)]
     return min(candidates)[1] if candidates else None
 
 
 # ---------------------------------------------------------------------- rows
 @dataclass(frozen=True)
-class Kept:
+class StoredRow:
     """A row of a sweep: one value of the parameter and the motion there.
 
     Attributes
@@ -312,7 +312,7 @@ class Kept:
         return int(self.cells[4])
 
 
-def kept(row: SweepRow, direction: str, names: list[str]) -> Kept:
+def kept(row: SweepRow, direction: str, names: list[str]) -> StoredRow:
     """Convert a row of `orbits.attractors.sweep`; `names` are the measures in the order of the CSV's columns."""
     found, guess = row.detail, row.detail.guess
     kind = "periodic" if row.attractor == "sliding" else row.attractor
@@ -323,12 +323,12 @@ def kept(row: SweepRow, direction: str, names: list[str]) -> Kept:
     nodes = "" if guess is None else json.dumps([[float(x) for x in node] for node in guess])
     cells += [row.modulation, str(int(found.symmetric)) if found.recurrent else "", nodes]
     band = [float(row.measures[name]) for name in BAND] if row.modulation else []
-    return Kept(
+    return StoredRow(
         cells, row.attractor, found.recurrent, row.dots, [float(x) for x in found.state], row.modulation, band
     )
 
 
-def rows_as_json(rows: list[Kept], study: Study) -> dict[str, Any]:
+def rows_as_json(rows: list[StoredRow], study: Study) -> dict[str, Any]:
     """Return the content of the CSV ready for JSON, at full precision, and the share of the values with modulated motions, by kind."""
     names = measured_names(study)
     kinds = dict.fromkeys(row.modulation for row in rows if row.modulation)
@@ -354,7 +354,7 @@ def _read(cell: str) -> object:
         return cell or None
 
 
-class Rows(row_journal.Rows[Kept]):
+class Rows(row_journal.Rows[StoredRow]):
     """The rows of a sweep on disk, each written at once.
 
     The CSV file is for the user. The journal beside it (`FILE.csv.unfinished`) has the states, too; it is deleted when the sweep is finished.
@@ -370,7 +370,7 @@ class Rows(row_journal.Rows[Kept]):
         self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
         if not target.exists():
             journal_of(target).unlink(missing_ok=True)
-        super().__init__(journal_of(target) if self.lasting else None, header_of(study, down), Kept)
+        super().__init__(journal_of(target) if self.lasting else None, header_of(study, down), StoredRow)
 
     def __enter__(self) -> Rows:
         try:
@@ -385,7 +385,7 @@ class Rows(row_journal.Rows[Kept]):
         self._write(self.heads, *(row.cells for row in self.found))
         return self
 
-    def keep(self, row: Kept) -> None:
+    def keep(self, row: StoredRow) -> None:
         """Add a row and write it to both files."""
         self._write(row.cells)
         super().keep(row)

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from contvines.command.sweep import Kept, _drawn_impact
+from contvines.command.sweep import StoredRow, _drawn_impact
 from orbits.words import Word
 from tests.contvines.studies import PAPER_MACHINE, table
 
@@ -69,5 +69,5 @@ def test_a_row_is_a_start_of_the_same_orbit(run, tmp_path, numbers, words):
 
 def test_the_impact_on_the_line_of_a_branch_is_told():
     """The branch begins at the other wall: its B is that of the second impact."""
-    row = Kept(["0.5", "", "", "LRtt"], "", True, [1.2, 1.4], [])
+    row = StoredRow(["0.5", "", "", "LRtt"], "", True, [1.2, 1.4], [])
     assert _drawn_impact(row, [(Word.parse("RLtt"), np.arange(2), np.full(2, 1.4))]) == 1
