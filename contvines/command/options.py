@@ -76,11 +76,9 @@ def picture(path: Path | None) -> Path | None:
 
 
 def inches(size: tuple[float, float] | None) -> tuple[float, float] | None:
-    """Check, before any work, that a size is possible for a picture; return it."""
-    if size is not None:
-        from ..plots.figures import check_size
-
-        check_size(size)
+    """Check, before any work, that width and height of a picture are between 1 and 60 inches; return them."""
+    if size is not None and not all(1.0 <= side <= 60.0 for side in size):
+        raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
     return size
 
 

@@ -37,11 +37,6 @@ if TYPE_CHECKING:
     from ..graph import Graph
 
 GENERAL = ("--output", "--size", "--style", "--trust")  # options for every picture
-LOOKS = {
-    "bare": ("0.35", (0, (1, 1.2))),
-    "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
-    "friction": ("#7b3294", (0, (3, 1.2))),
-}
 SHOWN = ("max_abs_q1", "amplitude")
 POINTS = 600
 
@@ -108,7 +103,8 @@ def plot(
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the network of branches."""
     from ..loci.chart import Chart
-    from ..plots.figures import check_style, save_figure
+    from ..plots.figures import save_figure
+    from ..shared.figures import styled
     from ..store import load
 
     asked = {name: line for name, line in given(context).items() if name not in GENERAL}
@@ -121,7 +117,8 @@ def plot(
             )
     target = output or beside(file, ".png")
     picture(target)
-    check_style(style)
+    with styled(style):  # an unknown style is refused before any work
+        pass
     for name, pair in (("--xlim", xlim), ("--ylim", ylim)):
         if pair is not None and not (math.isfinite(sum(pair)) and pair[0] < pair[1]):
             raise ValueError(
@@ -192,6 +189,7 @@ def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None,
     from orbits.problem import OrbitProblem
 
     from ..graph.stretches import default_measure
+    from ..plots.style import REFERENCES
 
     measure, over = y or default_measure(graph), x or graph.parameter
     problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)
@@ -209,7 +207,7 @@ def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None,
     values = np.linspace(*graph.within, POINTS)
     params = np.atleast_2d(problem.values(values))
     for kind in kinds:
-        color, dashes = LOOKS[kind]
+        color, dashes = REFERENCES[kind]
         response = response_of(kind, problem.model, params)
         axes.plot(
             values, response, color=color, linestyle=dashes, linewidth=1.4, zorder=1.7, label=NAMES[kind]

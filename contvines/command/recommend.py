@@ -168,7 +168,7 @@ def _label(found: Recommendation, name: str, text: str) -> str:
 
 def draw_places(axes: Axes, found: Recommendation) -> None:
     """Draw the worst response over the parameter that is chosen."""
-    from .plot import LOOKS
+    from ..plots.style import REFERENCES
 
     first = [p for p in found.places if p.samples < found.most or found.most == 1]
     complete = [p for p in found.places if p.samples == found.most > 1]
@@ -191,7 +191,7 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
     if hidden:
         axes.plot(hidden, [0.0] * len(hidden), "x", color=GREY, label="not known")
     for kind, (value, _) in found.compared.items():
-        color, dashes = LOOKS[kind]
+        color, dashes = REFERENCES[kind]
         axes.axhline(value, color=color, linestyle=dashes, linewidth=1.2, label=kind)
     if found.value is not None and found.chosen is not None:
         axes.axvspan(
@@ -215,11 +215,11 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
     """Draw the responses at the choice and those of the machines for comparison."""
     from orbits.design.references import NAMES
 
-    from .plot import LOOKS
+    from ..plots.style import REFERENCES
 
     for curve in found.curves:
-        if curve.name in LOOKS:
-            color, dashes = LOOKS[curve.name]
+        if curve.name in REFERENCES:
+            color, dashes = REFERENCES[curve.name]
             axes.plot(curve.x, curve.y, color=color, linestyle=dashes, linewidth=1.2, label=NAMES[curve.name])
     for name, style in (
         ("simulated", {"marker": ".", "ls": "", "ms": 2.5, "color": "0.35"}),

@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
 from ..graph import CurveOptions, Graph
-from ..graph.contents import Attractor
 from ..graph.table import told_apart
-from ..shared.figures import Size, Style, fit, narrower, panels, settle
+from ..shared.figures import Size, Style, finish_layout, narrower, panels
 from .basins import COLORS
 from .diagram import draw_diagram
 from .legends import NARROW, place_legend
@@ -22,6 +21,7 @@ from .style import HATCHES, axis_label
 
 MOST, FEW = 8, 5  # largest number of attractors with a colour of their own: usually, and in a low figure
 LOW = 3.4  # inches: a lower figure has less text
+Key = tuple[str, int, str]  # name and period of an attractor, and its branch if coexisting ones share both
 
 
 @hinting
@@ -57,19 +57,14 @@ def plot_atlas(
     if not graph.attractors:
         raise ValueError("the graph has no attractors: contvines atlas makes one with, from a study")
     own, size = axes is None, figsize or (7.2, 6.4)
-    small = own and size[1] < LOW
-
-    below = {"mosaic": "a;b", "sharex": True, "height_ratios": (1.8 if small else 2.4, 1)}
+    small, shared = own and size[1] < LOW, own and x in (None, graph.parameter)
+    below = {"mosaic": "a;b", "sharex": shared, "height_ratios": (1.8 if small else 2.4, 1)}
     with panels(axes, (2,), "an atlas is drawn on", size, style, below) as (figure, (upper, lower)):
         picture = draw_diagram(upper, graph, x, y, False, legend=False, **options)
-        if own:
-            upper.set_xlabel("")
-            upper.tick_params(labelbottom=False)
+        if shared:
+            upper.label_outer()
         draw_shares(lower, graph, FEW if small else MOST)
-        unit = graph.units.get(graph.parameter)
-        lower.set_xlabel(axis_label(graph.parameter, unit=unit, notation=graph.notation))
-        if small:
-            lower.set_ylabel("share")
+        lower.set_xlabel(axis_label(graph.parameter, graph.units.get(graph.parameter), graph.notation))
         # a high figure has both legends: one below the other if the panels leave no room beside them
         if own and not small and (narrower(lower, NARROW) or legend == "below"):
             place_legend(lower, picture.handles(), legend, own, remarks=picture.remarks)
@@ -77,61 +72,53 @@ def plot_atlas(
             place_legend(lower, (), legend, own, usual="beside")  # first: narrows both panels
             if not small:
                 place_legend(upper, picture.handles(), legend, own, remarks=picture.remarks)
-        if own:
-            fit(figure, frozen=True)
-        settle(figure)
+        finish_layout(figure, own)
         picture.lay_out()
     return figure
 
 
-def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
+def draw_shares(axes: Axes, graph: Graph, most: int) -> None:
     """Draw the shares of the attractors as stacked bars over the parameter; the `most` largest attractors have a colour each.
 
     Neighbouring values with few starts share a bar, so that each bar stands for about as many starts as the value with the most starts.
     """
-    met = [a for a in graph.attractors if a.starts] or graph.attractors
-    values = np.array(sorted({a.value for a in met}))
-    low, high = graph.within
-    starts = np.array([max(next(a.starts for a in met if a.value == v), 1) for v in values], dtype=float)
-    group = ((np.cumsum(starts) - starts) // starts.max()).astype(int)
-    group = np.unique(group, return_inverse=True)[1]
-    if group[-1] and starts[group == group[-1]].sum() < 0.5 * starts.max():
-        group[group == group[-1]] -= 1  # too few starts for a bar of their own
-    last = np.flatnonzero(np.diff(group))
+    met = [about for about in graph.attractors if about.starts] or graph.attractors
+    counts = {about.value: float(max(about.starts, 1)) for about in met}
+    values, starts = np.array(sorted(counts.items())).T
+    bar = ((np.cumsum(starts) - starts) // starts.max()).astype(int)
+    bar = np.unique(bar, return_inverse=True)[1]
+    if bar[-1] and starts[bar == bar[-1]].sum() < 0.5 * starts.max():
+        bar[bar == bar[-1]] -= 1  # too few starts for a bar of their own
+    last, (low, high) = np.flatnonzero(np.diff(bar)), graph.within
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
-    weights = starts / np.bincount(group, weights=starts)[group]
-    at_once = Counter((about.value, about.name, about.periods) for about in met)
-    many = {key[1:] for key, count in at_once.items() if count > 1}
+    weights = starts / np.bincount(bar, weights=starts)[bar]
 
-    def key_of(about: Attractor) -> tuple[str, int, str]:
-        """Return name and period of an attractor, and its branch if coexisting attractors share name and period."""
-        own = about.name, about.periods
-        return *own, (about.branch or "") if own in many else ""
+    alike = Counter((about.value, about.name, about.periods) for about in met)
+    several = {key[1:] for key, count in alike.items() if count > 1}
+    total: defaultdict[Key, float] = defaultdict(float)
+    heights: defaultdict[Key, np.ndarray] = defaultdict(lambda: np.zeros(len(edges) - 1))
+    for about in met:
+        motion, i = (about.name, about.periods), int(np.searchsorted(values, about.value))
+        key = *motion, (about.branch or "") if motion in several else ""
+        total[key] += about.share
+        heights[key][bar[i]] += about.share * weights[i]
 
-    total: defaultdict[tuple[str, int, str], float] = defaultdict(float)
-    for about in met:
-        total[key_of(about)] += about.share
-    shown = sorted(total, key=lambda key: -total[key])[:most]
-    order: list[tuple[str, int, str] | None] = [*(key for key in total if key in shown), None]  # None: others
-    heights = {key: np.zeros(len(edges) - 1) for key in order}
-    for about in met:
-        key, i = key_of(about), int(np.searchsorted(values, about.value))
-        heights[key if key in shown else None][group[i]] += about.share * weights[i]
-    periods = {(name, count) for name, count, _ in shown}
-    named = Counter(name for name, _ in periods)
-    short = told_apart([key[0] for key in order if key], 14)
+    largest = sorted(total, key=lambda key: -total[key])[:most]
+    shown = [key for key in total if key in largest]
+    short = told_apart([name for name, _, _ in shown], 14)
+    times = Counter(name for name, _ in {key[:2] for key in shown})
+    layers = []
+    for k, (name, periods, branch) in enumerate(shown):
+        parts = [f", k={periods}"] * (times[name] > 1) + [f" ({branch})"] * bool(branch)
+        fill = COLORS[k % len(COLORS)], HATCHES[k % len(HATCHES)]
+        layers.append((short[name] + "".join(parts), heights[shown[k]], *fill))
+    others = sum((heights[key] for key in total if key not in largest), np.zeros(len(edges) - 1))
     bottoms = np.zeros(len(edges) - 1)
-    for k, key in enumerate(order):
-        if not heights[key].any():
-            continue
-        name = "others" if key is None else short[key[0]]
-        if key is not None and named[key[0]] > 1:
-            name = f"{name}, k={key[1]}"
-        if key is not None and key[2]:
-            name = f"{name} ({key[2]})"
-        color, hatch = ("0.8", None) if key is None else (COLORS[k % len(COLORS)], HATCHES[k % len(HATCHES)])
-        look = {"align": "edge", "facecolor": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
-        axes.bar(edges[:-1], heights[key], np.diff(edges), bottoms, label=name, **look)
-        bottoms += heights[key]
+    look = {"align": "edge", "edgecolor": "white", "linewidth": 0}
+    for label, height, color, hatch in [*layers, ("others", others, "0.8", None)]:
+        if height.any():
+            look |= {"label": label, "facecolor": color, "hatch": hatch}
+            axes.bar(edges[:-1], height, np.diff(edges), bottoms, **look)
+            bottoms += height
     axes.set(ylim=(0.0, 1.0), ylabel="share of starts")
     axes.grid(False)

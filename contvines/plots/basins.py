@@ -41,8 +41,7 @@ def plot_basins(
     axes, legend, figsize, style
         As for :func:`contvines.plots.diagram.plot_diagram`.
     """
-    count = len(basins.attractors)
-    base = np.array([to_rgb(COLORS[k % len(COLORS)]) for k in range(max(count, 1))])
+    base = np.resize([to_rgb(color) for color in COLORS], (max(len(basins.attractors), 1), 3))
     base[[k for k, one in enumerate(basins.attractors) if one.kind == "impossible"]] = 0.9  # in a wall: grey
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
@@ -59,10 +58,10 @@ def plot_basins(
         axes.set_ylim(extent[2:])
         if basins.axes[0] == basins.leftward:
             axes.invert_xaxis()
-        gauges, notation = basins.gauges, basins.notation
-        across, up = (axis_label(n, gauges.get(n, (1.0, ""))[1], notation) for n in basins.axes)
+        units = {name: unit for name, (_, unit) in basins.gauges.items()}
+        across, up = (axis_label(name, units.get(name), basins.notation) for name in basins.axes)
         axes.set(xlabel=across, ylabel=up)
-        axes.set_title(f"{basins.parameter} = {figures(basins.value)} {basins.unit}".rstrip())
+        axes.set_title(f"{axis_label(basins.parameter)} = {figures(basins.value)} {basins.unit}".rstrip())
         if legend:
             entries = []
             for k, about in enumerate(basins.attractors):

@@ -25,9 +25,8 @@ class Curve:
         angles = () if branch.problem is None else branch.problem.angles  # radians, modulo 2 pi
         self.turning = (x in angles, y in angles)
         self.lines: list[Line2D] = []
-        self._stored = _strands(
-            branch, x, y, branch.points[first : last + 1], branch.values[first : last + 1]
-        )
+        part = slice(first, last + 1)
+        self._stored = _strands(branch, x, y, branch.points[part], branch.values[part])
 
     def draw(self, axes: Axes, style: Mapping[str, Any]) -> None:
         """Draw lines through the stored points; `style`: arguments of `Axes.plot`."""
@@ -36,9 +35,9 @@ class Curve:
     def refine(self, axes: Axes) -> None:
         """Insert points between the stored ones where the line has visible corners, for the present limits of the axes."""
         strands = self._stored
-        if len(strands[0][0]) < 3 or not self.lines:
+        if len(strands[0][0]) < 3:
             return
-        wanted = np.max([_missing(axes, xs, ys) for xs, ys in strands], axis=0)
+        wanted = np.max([_insertions(axes, xs, ys) for xs, ys in strands], axis=0)
         drawn = strands
         if wanted.any():
             u, p, inside = between(self.branch, self.first, self.last, wanted)
@@ -108,7 +107,7 @@ def _strands(
     return list(zip(*(column.T for column in np.broadcast_arrays(*columns))))
 
 
-def _missing(axes: Axes, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
+def _insertions(axes: Axes, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     """Return the number of points to be inserted after each point of a line, shape (n - 1,)."""
     page = axes.transData.transform(np.column_stack([xs, ys]))
     steps = np.diff(page, axis=0)

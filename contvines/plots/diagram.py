@@ -16,17 +16,18 @@ from matplotlib.text import Annotation
 
 from contvines.shared.near_names import did_you_mean
 
+from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
 from ..graph import Graph
 from ..graph.contents import proof_mark, proved_stretches
 from ..graph.stretches import default_measure, measure_at, measured, undrawn
 from ..graph.table import motion_name, told_apart
-from ..shared.figures import Size, Style, drawing, fit, pixels, root, settle, shrinking
+from ..shared.figures import Size, Style, drawing, finish_layout, pixels, root, shrinking
 from .curves import Curve
 from .labels import Label, Region, add_inset, crowded_region, grouped, is_curve, place_labels
 from .legends import hold_legend, place_legend
-from .style import PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, Mark, axis_label, line_of, mark_of
+from .style import PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, axis_label, line_of, mark_of
 
 COLORS = ("branch", "word", "stability")
 # a range of y longer than this multiple of the range of most points and of the special points is cut
@@ -114,10 +115,9 @@ def plot_diagram(
     if unknown:
         known = ", ".join([*graph.branches, *graph.special])
         raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {known}")
-    own = axes is None
-    look = {"labels": labels, "ends": ends, "words": words, "color": color, "name": name}
-    look["inset"] = own if inset is None else inset
-    with drawing(axes, style, figsize) as (figure, axes, _):
+    with drawing(axes, style, figsize) as (figure, axes, own):
+        look = {"labels": labels, "ends": ends, "words": words, "color": color, "name": name}
+        look["inset"] = own if inset is None else inset
         draw_diagram(axes, graph, x, y, own, marks=marks, legend=legend, limits=(xlim, ylim), **look)
     return figure
 
@@ -136,33 +136,20 @@ def draw_diagram(
 ) -> Picture:
     """Draw a graph as :func:`plot_diagram` does, with the present rcParams.
 
-    Parameters
-    ----------
-    own : bool
-        Whether the figure was made by `new_figure`: only then its layout may change.
-    limits : pair
-        `xlim` and `ylim`.
-    **look
-        Further options of :class:`Picture`.
+    `own`: whether the figure was made by `new_figure`, so that its layout may change; `limits`: `xlim` and `ylim`; `look`: options of :class:`Picture`.
     """
     x, y = x or graph.parameter, y or default_measure(graph)
     picture = Picture(axes, graph, x, y, kinds=_marked(graph, marks), **look)
     picture.draw()
     frame(axes, *limits)
-    for name, text, label in (
-        (x, axes.get_xlabel(), axes.set_xlabel),
-        (y, axes.get_ylabel(), axes.set_ylabel),
-    ):
-        if not text:
-            label(axis_label(name, unit=graph.units.get(name), notation=graph.notation))
+    across, up = (axis_label(name, graph.units.get(name), graph.notation) for name in (x, y))
+    axes.set(xlabel=axes.get_xlabel() or across, ylabel=axes.get_ylabel() or up)
     picture.refine()  # changes of the axes' size by the layout below are too small to need another refinement
     if limits[0] is not None:
         frame(axes, *limits)  # again, with the points inserted between the stored ones
     picture.seen()
     place_legend(axes, picture.handles(), legend, own, remarks=picture.remarks)
-    if own:
-        fit(root(axes), frozen=True)
-    settle(root(axes))
+    finish_layout(root(axes), own)
     picture.lay_out()
     picture.follow_zoom()
     if not graph.finished:
@@ -233,14 +220,15 @@ class Picture:
         inset: bool | Region = False,
     ) -> None:  # fmt: skip
         self.axes, self.graph, self.x, self.y, self.color = axes, graph, x, y, color
-        self.labels, self.words, self.kinds, self.ends, self.wanted = labels, words, kinds, ends, inset
-        known = pictures_on(axes)
-        axes.contvines_pictures = [*known, self]  # type: ignore[attr-defined]
-        self.name = (f"{name} ", "") if name else ("", "′" * len(known))  # prefix and suffix of labels
-        self.first_color = sum(len(picture.graph.branches) for picture in known)
+        self.labels, self.words, self.kinds, self.ends, self.region = labels, words, kinds, ends, inset
+        earlier = getattr(axes, "contvines_pictures", [])  # some may have been cleared by the user
+        others = [one for one in earlier if one.curves and one.curves[0].lines[0].axes is axes]
+        axes.contvines_pictures = [*others, self]  # type: ignore[attr-defined]
+        self.name = (f"{name} ", "") if name else ("", "′" * len(others))  # prefix and suffix of labels
+        self.first_color = sum(len(picture.graph.branches) for picture in others)
         self.rc = rcParams.copy()
         self.remarks = [remark] if (remark := undrawn(graph, x, y)) else []
-        self.explained: dict[str, tuple[int, Artist]] = {}  # legend: label -> rank and handle
+        self.entries: dict[str, tuple[int, Artist]] = {}  # legend: label -> rank and handle
         self.curves: list[Curve] = []
         self.tint: dict[str, str] = {}
         self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
@@ -257,7 +245,7 @@ class Picture:
                 continue
             spot = [float(measured(branch, name)[entry.index]) for name in (self.x, self.y)]
             if np.isfinite(spot).all():
-                look = UNRESOLVED.look("0.4", 11.0) | {"markerfacecolor": "none", "markeredgewidth": 1.0}
+                look = mark_of(UNRESOLVED, "0.4", 11.0) | {"markerfacecolor": "none", "markeredgewidth": 1.0}
                 self.axes.plot(*spot, zorder=5.8, **look)
                 self._explain_mark(UNRESOLVED)
 
@@ -302,7 +290,7 @@ class Picture:
             if not (np.isfinite(px) and np.isfinite(py)):
                 continue  # for example B of a motion without impacts
             tint = "0.15" if self.color == "stability" else self.tint[branch.label]
-            self.axes.plot([px], [py], zorder=6, **mark_of(point.kind, self.graph).look(tint, size))
+            self.axes.plot([px], [py], zorder=6, **mark_of(self.graph.kind(point.kind), tint, size))
             if proof_mark(self.graph, point.label):
                 look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0, **PROVED}
                 self.axes.plot([px], [py], markersize=2.2 * size, zorder=5.5, **look)
@@ -313,20 +301,22 @@ class Picture:
         """Return the special points within the limits, and add the meaning of their marks to the legend."""
         found = [spot for spot in self.spots if self._inside(*spot[2:])]
         for _, kind, _, _ in found:
-            self._explain_mark(mark_of(kind, self.graph))
+            self._explain_mark(self.graph.kind(kind))
         return found
 
     def handles(self) -> list[Artist]:
         """Return the entries of the legend, in order."""
-        ranked = sorted(self.explained.values(), key=lambda entry: entry[0])
-        words = (_entry(remark, linestyle="none") for remark in self.remarks)
-        return [*(handle for _, handle in ranked), *words]
+        ranked = sorted(self.entries.values(), key=lambda entry: entry[0])
+        return [
+            *(handle for _, handle in ranked),
+            *(Line2D([], [], linestyle="none", label=remark) for remark in self.remarks),
+        ]
 
     def _explain(self, rank: int, label: str, **look: Any) -> None:
-        self.explained.setdefault(label, (rank, _entry(label, **look)))
+        self.entries.setdefault(label, (rank, Line2D([], [], label=label, **look)))
 
-    def _explain_mark(self, mark: Mark) -> None:
-        self._explain(8, mark.name, **mark.look("0.2", 0.9 * float(self.rc["lines.markersize"])))
+    def _explain_mark(self, kind: Kind) -> None:
+        self._explain(8, kind.text, **mark_of(kind, "0.2", 0.9 * float(self.rc["lines.markersize"])))
 
     def refine(self) -> None:
         """Insert points between the stored ones where lines have visible corners."""
@@ -349,7 +339,7 @@ class Picture:
         """Renew the layout whenever the limits of the axes change."""
 
         def again(_: Axes) -> None:
-            self.wanted = self.wanted is True  # a region given by the user belongs to the first limits only
+            self.region = self.region is True  # a region given by the user belongs to the first limits only
             self.lay_out()
 
         for change in ("xlim_changed", "ylim_changed"):
@@ -362,9 +352,9 @@ class Picture:
             self.inset[0].axes.remove()
             self.inset = None
         spots = np.array([spot[2:] for spot in self.seen()]).reshape(-1, 2)
-        region = crowded_region(self.axes, spots) if isinstance(self.wanted, bool) else self.wanted
-        made = add_inset(self.axes, region, 0.8 * self._text()) if self.wanted and region else None
-        if region is None or made is None:
+        region = crowded_region(self.axes, spots) if self.region is True else self.region
+        made = add_inset(self.axes, region, 0.8 * self._text()) if region else None
+        if not region or made is None:
             return
         look: dict[str, Any] = {"words": self.words, "color": self.color, "kinds": self.kinds}
         inset = Picture(made[0], self.graph, self.x, self.y, **look)
@@ -416,7 +406,7 @@ class Picture:
         low, high = self.axes.bbox.get_points()
         for curve in self.curves:
             label = curve.branch.label
-            if not curve.lines or (chosen is not None and label not in chosen):
+            if chosen is not None and label not in chosen:
                 continue
             xy = np.asarray(curve.lines[0].get_xydata(), dtype=float)
             page = self.axes.transData.transform(xy)
@@ -431,12 +421,3 @@ class Picture:
             tint = "0.25" if self.color == "stability" else self.tint[label]
             found[label] = float(total[-1]), Label(text, x, y, tint, 0, chosen is not None, True)
         return [label for _, label in sorted(found.values(), key=lambda entry: -entry[0])]
-
-
-def _entry(label: str, **look: Any) -> Artist:
-    return Line2D([], [], label=label, **look)
-
-
-def pictures_on(axes: Axes) -> list[Picture]:
-    """Return the pictures drawn on axes so far."""
-    return [picture for picture in getattr(axes, "contvines_pictures", []) if picture.axes is axes]

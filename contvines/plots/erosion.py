@@ -42,10 +42,8 @@ def plot_erosion(
         low, high = np.array([one.share_interval for one in erosion.entries]).T
         (shares,) = beside.plot(values, erosion.shares, color=SHARE, marker=".", label="share of starts")
         beside.fill_between(values, low, high, color=SHARE, alpha=0.25, linewidth=0.0)
-        distances = np.where(np.isfinite(erosion.distances), erosion.distances, np.nan)
-        (kicks,) = axes.plot(
-            values, distances, color=KICK, marker="o", label="smallest kick that leads elsewhere"
-        )
+        (kicks,) = axes.plot(values, erosion.distances, "o-", color=KICK)
+        kicks.set_label("smallest kick that leads elsewhere")
         axes.set_ylim(bottom=0.0)
         axes.set_zorder(beside.get_zorder() + 1)
         axes.patch.set_visible(False)

@@ -47,15 +47,15 @@ class Label:
     near: bool = False  # only places near the anchor: labels of branches
 
 
-class Ground:
+class Raster:
     """Raster of the area of axes, with a weight for each cell that is covered by a curve, mark, text, legend or inset."""
 
     def __init__(self, axes: Axes, legend: bool = True) -> None:
         self.origin = np.asarray(axes.bbox.min)
-        self.raster = np.zeros((np.asarray(axes.bbox.size) / CELL).astype(int) + 2)
+        self.weights = np.zeros((np.asarray(axes.bbox.size) / CELL).astype(int) + 2)
         for line in axes.lines:
             if line.get_transform().contains_branch(axes.transData):
-                self.add(on_page(line))
+                self.add(covered_points(line))
         for artist in axes.artists:
             if isinstance(artist, InsetIndicator):
                 self.add(along(artist.rectangle.get_window_extent().corners()[[0, 1, 3, 2, 0]]))
@@ -70,17 +70,17 @@ class Ground:
     def add(self, points: np.ndarray, weight: float = 1.0) -> None:
         """Give a weight to the cells that contain points of the page, shape (n, 2)."""
         cells = np.floor((points[np.isfinite(points).all(axis=1)] - self.origin) / CELL).astype(int)
-        cells = cells[((cells >= 0) & (cells < self.raster.shape)).all(axis=1)]
-        self.raster[tuple(cells.T)] = np.maximum(self.raster[tuple(cells.T)], weight)
+        cells = cells[((cells >= 0) & (cells < self.weights.shape)).all(axis=1)]
+        self.weights[tuple(cells.T)] = np.maximum(self.weights[tuple(cells.T)], weight)
 
     def add_box(self, box: Box) -> None:
         """Give the weight `TAKEN` to the cells of a box."""
         x0, y0, x1, y1 = self._cells(box)[:, 0]
-        self.raster[x0:x1, y0:y1] = TAKEN
+        self.weights[x0:x1, y0:y1] = TAKEN
 
     def covered(self, boxes: Box) -> np.ndarray:
         """Return the sum of the weights under each box, shape (n,); `boxes` has the shape (n, 4) or (4,)."""
-        s = np.pad(self.raster.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+        s = np.pad(self.weights.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         x0, y0, x1, y1 = self._cells(boxes)
         return s[x1, y1] - s[x0, y1] - s[x1, y0] + s[x0, y0]
 
@@ -89,7 +89,7 @@ class Ground:
         count = int(np.abs(np.diff(lines, axis=1)).max() / CELL) + 2
         places = lines[:, :1] + np.linspace(0.0, 1.0, count)[:, None] * (lines[:, 1:] - lines[:, :1])
         cells = np.floor((places - self.origin) / CELL).astype(int)
-        met = self.raster[tuple(np.clip(cells, 0, np.array(self.raster.shape) - 1).T)].T
+        met = self.weights[tuple(np.clip(cells, 0, np.array(self.weights.shape) - 1).T)].T
         return np.sum(met * ((np.cumsum(met == 0.0, axis=1) > 2) | (met >= TAKEN)), axis=1)
 
     def free(self, size: np.ndarray, inside: np.ndarray | None = None) -> np.ndarray:
@@ -97,7 +97,7 @@ class Ground:
 
         With `inside`, a bool per cell, boxes must lie in these cells and may cover curves.
         """
-        taken = self.raster > 0.0 if inside is None else (self.raster >= TAKEN) | ~inside
+        taken = self.weights > 0.0 if inside is None else (self.weights >= TAKEN) | ~inside
         s = np.pad(taken.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         w, h = np.ceil(np.asarray(size) / CELL).astype(int)
         total = s[w:, h:] - s[:-w, h:] - s[w:, :-h] + s[:-w, :-h]
@@ -106,7 +106,7 @@ class Ground:
     def _cells(self, boxes: Box) -> np.ndarray:
         """Return the first and last (exclusive) cells of boxes, shape (4, n)."""
         corners = (np.atleast_2d(boxes) - np.tile(self.origin, 2)) / CELL + [0.0, 0.0, 1.0, 1.0]
-        return np.clip(corners, 0, np.tile(self.raster.shape, 2)).astype(int).T
+        return np.clip(corners, 0, np.tile(self.weights.shape, 2)).astype(int).T
 
 
 def along(page: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
@@ -123,7 +123,7 @@ def is_curve(line: Line2D) -> bool:
     return np.size(line.get_xdata()) > 1 and line.get_linestyle() not in ("None", "none", "")
 
 
-def on_page(line: Line2D) -> np.ndarray:
+def covered_points(line: Line2D) -> np.ndarray:
     """Return points of the page that are covered by a curve, or by the marks of a line without one, shape (n, 2)."""
     page = line.get_transform().transform(np.asarray(line.get_xydata(), dtype=float))
     if is_curve(line):
@@ -138,7 +138,7 @@ def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annot
 
     Limits and size of the axes must be final. `size` is the font size in points. Labels outside the axes are ignored.
     """
-    unit, ground = pixels(axes), Ground(axes)
+    unit, raster = pixels(axes), Raster(axes)
     low, high = np.asarray(axes.bbox.get_points())
     anchors = axes.transData.transform(np.array([[label.x, label.y] for label in labels]).reshape(-1, 2))
     written = []
@@ -153,9 +153,9 @@ def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annot
         radii, ways = places[:, 0], places[:, 1:]
         middles = at + radii[:, None] * unit * ways + 0.5 * extent * np.sign(np.round(ways, 6))
         boxes = np.hstack([middles - 0.5 * extent, middles + 0.5 * extent])
-        leads = ground.crossed(np.stack([np.broadcast_to(at, middles.shape), middles], axis=1))
+        leads = raster.crossed(np.stack([np.broadcast_to(at, middles.shape), middles], axis=1))
         outside = np.any((boxes[:, :2] < low) | (boxes[:, 2:] > high), axis=1)
-        cost = 0.3 * radii + _claimed(boxes, i, anchors) + 6.0 * ground.covered(boxes)
+        cost = 0.3 * radii + _claimed(boxes, i, anchors) + 6.0 * raster.covered(boxes)
         cost += np.where(radii >= LEADER, 4.0 * leads, 0.0) + TAKEN * outside
         k = int(np.argmin(cost))
         if cost[k] > WORST[label.near] and not label.kept:
@@ -168,10 +168,10 @@ def place_labels(axes: Axes, labels: Sequence[Label], size: float) -> list[Annot
         written.append(
             axes.annotate(label.text, (label.x, label.y), offset, textcoords="offset points", **look)
         )
-        ground.add_box(boxes[k] + GAP * unit * np.array([-1, 0, 1, 0]))
+        raster.add_box(boxes[k] + GAP * unit * np.array([-1, 0, 1, 0]))
         if radii[k] >= LEADER:
             line = along([at, middles[k]])
-            ground.add(np.concatenate([line, line + [CELL, 0.0]]), TAKEN)  # two cells wide
+            raster.add(np.concatenate([line, line + [CELL, 0.0]]), TAKEN)  # two cells wide
     return written
 
 
@@ -237,12 +237,12 @@ def add_inset(axes: Axes, region: Region, size: float) -> tuple[Axes, InsetIndic
 
     `size` is the font size of the tick labels in points.
     """
-    ground, frame, unit = Ground(axes), np.asarray(axes.bbox.size), pixels(axes)
+    raster, frame, unit = Raster(axes), np.asarray(axes.bbox.size), pixels(axes)
     corners = axes.transData.transform(np.transpose(region))
-    ground.add_box(np.concatenate([corners.min(axis=0), corners.max(axis=0)]))
+    raster.add_box(np.concatenate([corners.min(axis=0), corners.max(axis=0)]))
     edge = 0.012 * axes.bbox.width
     for extent in SIZES[np.argsort(-SIZES.prod(axis=1), kind="stable")] * frame:
-        places = ground.free(extent + edge)
+        places = raster.free(extent + edge)
         if len(places) and np.all(extent >= np.array(LEAST_INSET) * 72.0 * unit):
             break
     else:

@@ -12,7 +12,7 @@ from matplotlib.legend import Legend
 from contvines.shared.figures import legend_below, narrower, root, settle
 from contvines.shared.near_names import did_you_mean
 
-from .labels import Ground
+from .labels import Raster
 
 NARROW = 5.0  # inches: in narrower figures the legend is below the axes
 PLACES = ("inside", "beside", "below")
@@ -73,7 +73,7 @@ def place_legend(
     figure = root(axes)
     settle(figure)
     box = legend.get_window_extent().extents
-    covers = where is True and own and Ground(axes, legend=False).covered(box)[0] > 0.0
+    covers = where is True and own and Raster(axes, legend=False).covered(box)[0] > 0.0
     if place == "beside" or covers:
         legend.set_loc("upper left")
         legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from ..continuation.settings import hinting
 from ..shared.figures import Size, Style, drawing
 from .legends import place_legend
-from .style import BARE, BLUE, RED, axis_label
+from .style import BLUE, RED, REFERENCES, axis_label
 
-BESIDE: dict[str, Any] = {"color": BARE, "linestyle": (0, (4, 1.5))}
+NAMES = {"bare": "without absorber", "tuned": "tuned absorber", "oscillator": "with absorber"}
 PLAIN = (-2, 3)  # powers of ten between which tick labels have no exponent
 
 
@@ -46,13 +46,12 @@ def plot_transient(
     with drawing(axes, style, figsize) as (figure, axes, own):
         thin = 0.65 * float(rcParams["lines.linewidth"])  # many periods stand side by side
         for what, _, values in curves:
-            if what.startswith("relative"):
-                continue
-            label = "with absorber" if compared else what.replace("_", " ")
-            look: dict[str, Any] = {"color": BLUE, "label": label}
-            if what.startswith("bare"):
-                look = {**BESIDE, "label": "without absorber", "zorder": 1.9}
-            axes.plot(time, values, linewidth=thin, **look)
+            bare = what.startswith("bare")
+            color, dashes = REFERENCES["bare"] if bare else (BLUE, "-")
+            look = {"color": color, "linestyle": dashes, "linewidth": thin, "zorder": 1.9 if bare else 2.0}
+            label = NAMES["bare" if bare else "oscillator"] if compared else what.replace("_", " ")
+            if not what.startswith("relative"):
+                axes.plot(time, values, label=label, **look)
         if hits is not None and hits.size:
             ticks: dict[str, Any] = {"marker": "|", "linestyle": "none", "color": RED, "label": "impacts"}
             axes.plot(hits, np.full(hits.size, 0.02), transform=axes.get_xaxis_transform(), **ticks)
@@ -83,15 +82,11 @@ def plot_densities(
     figsize : (float, float), optional
         Size in inches.
     """
-    looks: dict[str, dict[str, Any]] = {
-        "bare": {**BESIDE, "label": "without absorber"},
-        "tuned": {"color": RED, "linestyle": (0, (1, 1.6)), "label": "tuned absorber"},
-    }
     with drawing(None, None, figsize) as (figure, axes, own):
         colors = iter([BLUE, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))
         for name, (values, _) in densities.items():
-            label = "with absorber" if name == "oscillator" else name
-            axes.plot(frequencies, values, **(looks.get(name) or {"color": next(colors), "label": label}))
+            color, dashes = REFERENCES.get(name) or (next(colors), "-")
+            axes.plot(frequencies, values, color=color, linestyle=dashes, label=NAMES.get(name, name))
         units = {shown for _, shown in densities.values()}
         up = axis_label("density of the response", unit=units.pop() if len(units) == 1 else None)
         axes.set(yscale="log", xlabel=axis_label("frequency", unit=unit), ylabel=up)

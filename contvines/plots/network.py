@@ -12,8 +12,9 @@ from ..branches import Branch
 from ..continuation.settings import hinting
 from ..graph import Graph
 from ..graph.table import short_word
-from ..shared.figures import Size, Style, drawing, fit, settle
-from .labels import Ground
+from ..shared.figures import Size, Style, drawing, finish_layout
+from ..shared.numbers import figures_in
+from .labels import Raster
 
 COLUMNS = 6  # largest number of columns side by side
 ASIDE = 0.42  # in widths of a column: distance of a bent arrow from the middle of its column
@@ -32,7 +33,7 @@ def plot_network(
 
     Solid boxes are real branches, dotted ones virtual branches; branches with stable parts are grey. After `COLUMNS` columns the
     picture goes on below, from right to left, then again from left to right. In a small figure boxes have labels only; branches that
-    find no room are left out, those after the most switches first, and the title gives their number.
+    find no room are left out, and the title gives their number.
 
     Parameters
     ----------
@@ -42,20 +43,16 @@ def plot_network(
     """
     layers = _layers(graph)
     place = _places(layers, COLUMNS)
-    wide, high = _extent(place)
-    needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6))
+    x, y = np.array([*place.values()] or [(0.0, 0.0)]).T
+    needed = (max(4.5, 2.9 * (x.max() + 1.0)), max(2.4, 1.15 * (np.ptp(y) + 1.0) + 0.6))
     with drawing(axes, style, figsize or needed) as (figure, axes, own):
         across, up = np.array(axes.bbox.size) / figure.dpi
         # boxes with labels only; as many columns as leave room for arrows
         compact = across < 0.8 * needed[0] and (figsize is not None or not own)
         size = 6.0 if compact else 8.0
         if compact:
-            columns = int(min(COLUMNS, max(2, across / COMPACT)))
-            fitting = [
-                n for n in range(len(layers) + 1) if _extent(_places(layers[:n], columns))[1] <= up / ROW
-            ]
-            few = layers[: fitting[-1]] or [one[: max(int(up / ROW), 1)] for one in layers[:1]]
-            place = _places(few, columns)
+            place = _places(layers, int(min(COLUMNS, max(2, across / COMPACT))))
+            place = {label: at for label, at in place.items() if at[1] >= 1.0 - up / ROW}
         boxes = {label: _box(axes, graph.branches[label], at, size, compact) for label, at in place.items()}
         if graph.branches:
             computed = any(branch.stable is not None for branch in graph.branches.values())
@@ -68,15 +65,14 @@ def plot_network(
         x, y = np.array([*place.values()] or [(0.0, 0.0)]).T
         aside = (0.15, 0.2) if compact else (0.0, 0.0)
         axes.set(xlim=(-0.5 - aside[0], x.max() + 0.5 + aside[1]), ylim=(y.min() - 0.6, y.max() + 0.6))
-        if own:
-            fit(figure, frozen=True)
-        settle(figure)
+        finish_layout(figure, own)
         for (source, target), (labels, both) in _pairs(graph).items():
             if source not in place or target not in place:
                 continue
             bend = _bend(axes, place, source, target)
             around = {"patchA": boxes[source].get_bbox_patch(), "patchB": boxes[target].get_bbox_patch()}
-            look = {"mutation_scale": 10, "color": "0.35", "linewidth": 0.9, "zorder": 1, **around}
+            look = {"mutation_scale": 10, "color": "0.35", "linewidth": 0.9, **around}
+            look["zorder"] = 3.5  # after the boxes, whose sizes on the page are known when they are drawn
             look |= {"arrowstyle": "<|-|>" if both else "-|>", "connectionstyle": f"arc3,rad={bend}"}
             axes.add_patch(FancyArrowPatch(place[source], place[target], **look))
             beside = compact and bend == 0.0 and place[source][0] == place[target][0]  # a short arrow
@@ -95,19 +91,17 @@ def _box(axes: Axes, branch: Branch, at: tuple[float, float], size: float, compa
 
 def _write(axes: Axes, text: str, ends: np.ndarray, bend: float, size: float, aside: float) -> None:
     """Write a label on its arrow where it covers neither a box nor another label, else in the middle of the arrow."""
-    ground, white = Ground(axes), {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"}
+    raster, white = Raster(axes), {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"}
     look = {"ha": "left" if aside else "center", "va": "center", "fontsize": size, "bbox": white, "zorder": 4}
     written = axes.text(0.0, 0.0, text, **look)
     (dx, dy), t = ends[1] - ends[0], np.array(ALONG)[:, None]
     corner = ends.mean(axis=0) + bend * np.array([dy, -dx])
     on = (1 - t) ** 2 * ends[0] + 2 * t * (1 - t) * corner + t**2 * ends[1]
-    covered = []
-    for x, y in axes.transData.inverted().transform(on):
-        written.set_position((x + aside, y))
-        covered.append(
-            (ground.covered(written.get_window_extent().extents)[0] > 0.0, len(covered), (x + aside, y))
-        )
-    written.set_position(min(covered)[2])
+    places = axes.transData.inverted().transform(on) + [aside, 0.0]
+    for place in (*places, places[0]):
+        written.set_position(tuple(place))
+        if raster.covered(written.get_window_extent().extents)[0] == 0.0:
+            break
 
 
 def _pairs(graph: Graph) -> dict[tuple[str, str], tuple[list[str], bool]]:
@@ -115,12 +109,10 @@ def _pairs(graph: Graph) -> dict[tuple[str, str], tuple[list[str], bool]]:
     pairs: dict[tuple[str, str], tuple[list[str], bool]] = {}
     for switch in graph.switches:
         key, back = (switch.source, switch.target), (switch.target, switch.source)
-        if key[0] == key[1] or not all(label in graph.branches for label in key):
-            continue
-        known = back if back in pairs else key
-        labels, both = pairs.get(known, ([], False))
-        more = [] if switch.point in labels else [switch.point]
-        pairs[known] = [*labels, *more], both or known == back
+        if key[0] != key[1]:
+            ends = back if back in pairs else key
+            labels, both = pairs.get(ends, ([], False))
+            pairs[ends] = list(dict.fromkeys([*labels, switch.point])), both or ends == back
     return pairs
 
 
@@ -140,12 +132,6 @@ def _bend(axes: Axes, place: Places, source: str, target: str) -> float:
             across, up = np.abs(axes.transData.transform((1.0, dy)) - axes.transData.transform((0.0, 0.0)))
             return float(outside * 2.0 * ASIDE * across / up * np.sign(dy))
     return 0.0
-
-
-def _extent(place: Places) -> tuple[float, float]:
-    """Return the numbers of columns and rows."""
-    x, y = np.array([*place.values()] or [(0.0, 0.0)]).T
-    return float(x.max()) + 1.0, float(np.ptp(y)) + 1.0
 
 
 def _layers(graph: Graph) -> list[list[str]]:
@@ -184,7 +170,5 @@ def _caption(branch: Branch) -> str:
     word = short_word(about["word"] or about.get("name", ""), 18) if "word" in about else ""
     periods = about.get("periods")
     named = "  ".join([branch.label, *filter(None, [word, f"k={periods}" if periods else ""])])
-    low, high = branch.range
-    digits = next((d for d in range(4, 17) if f"{low:.{d}g}" != f"{high:.{d}g}"), 4)  # that distinguish them
-    span = " to ".join(dict.fromkeys(f"{end:.{digits}g}" for end in branch.range))
+    span = " to ".join(dict.fromkeys(map(figures_in(branch.range, branch.range), branch.range)))
     return f"{named}\n{branch.parameter} {span}"

@@ -26,11 +26,6 @@ def plot_portrait(
         As for :func:`contvines.plots.diagram.plot_diagram`; given axes get the phase portrait.
     **options
         Further options of the orbit's `plot` method.
-
-    Raises
-    ------
-    TypeError
-        If an orbit without a `plot` method gets further options.
     """
     if isinstance(orbit, Drawable):
         given = {"axes": axes, "figsize": figsize, "style": style, **options}

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..bifurcation.kinds import BY_NAME
+from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import kind_named
 
 if TYPE_CHECKING:
-    from ..graph import Graph
     from ..loci.locus import Locus
     from ..survey.results import Survey
 
 # line styles by state; unknown: stability was not computed
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
 WIDTHS = {"stable": 1.25, "unknown": 1.1, "unstable": 0.88, "virtual": 0.88}  # relative to lines.linewidth
-BLUE, RED, BARE = "#0b3c6f", "#b5121b", "0.55"  # computed; measured or failed; for comparison
+BLUE, RED = "#0b3c6f", "#b5121b"  # computed; measured or failed
+REFERENCES: dict[str, tuple[str, Any]] = {  # colours and dashes of responses for comparison
+    "bare": ("0.35", (0, (1, 1.2))),
+    "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
+    "friction": ("#7b3294", (0, (3, 1.2))),
+}
 STATE_COLORS = {"stable": BLUE, "unknown": "#4d4d4d", "unstable": "#d9484b", "virtual": "#8a8a8a"}
 HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")  # areas differ without colours
 PROVED = {"color": "#7fc97f", "alpha": 0.45}  # bands below proved parts
@@ -44,41 +49,26 @@ STATES = {
 STATE_OF = {True: "stable", False: "unstable", None: "unknown"}
 
 
-@dataclass(frozen=True)
-class Mark:
-    """Name and marker of a kind of special points."""
-
-    name: str
-    marker: str
-    filled: bool = False
-
-    def look(self, color: str, size: float) -> dict[str, Any]:
-        """Return arguments of `Axes.plot` for the mark; `size` in points."""
-        return {
-            "linestyle": "none",
-            "marker": self.marker,
-            "color": color,
-            "markersize": size,
-            "markerfacecolor": color if self.filled else "white",
-            "markeredgecolor": "black" if self.filled else color,
-            "markeredgewidth": (0.5 if self.filled else 1.3) * size / 6.0,
-        }
-
-
-MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in BY_NAME.values()}
-PLAIN = Mark("special point", "o")
 LIMITS = {  # names of loci of cycles of long period, by their limit
     "heteroclinic": "heteroclinic cycle",
     "saddle-node": "saddle-node on the cycle",
     "at-rest": "cycle that comes to rest",
 }
-UNRESOLVED = Mark("unresolved", "s")
+UNRESOLVED = Kind("unresolved", "UR", marker="s", filled=False)
 
 
-def mark_of_locus(locus: Locus) -> Mark:
-    """Return the mark of a locus: that of its special points, with the name of the limit for cycles of long period."""
-    mark = MARKS.get(locus.kind, PLAIN)
-    return replace(mark, name=LIMITS.get(locus.limit, mark.name))
+def kind_of_locus(locus: Locus) -> Kind:
+    """Return the kind of the special points of a locus, with the name of the limit for cycles of long period."""
+    kind = kind_named(locus.kind)
+    return replace(kind, text=LIMITS.get(locus.limit, kind.text))
+
+
+def mark_of(kind: Kind, color: str, size: float) -> dict[str, Any]:
+    """Return arguments of `Axes.plot` for the mark of a kind of special points; `size` in points."""
+    look = {"linestyle": "none", "marker": kind.marker, "color": color, "markersize": size}
+    if kind.filled:
+        return look | {"markeredgecolor": "black", "markeredgewidth": 0.5 * size / 6.0}
+    return look | {"markerfacecolor": "white", "markeredgewidth": 1.3 * size / 6.0}
 
 
 def line_of(state: str, color: str) -> dict[str, Any]:
@@ -87,12 +77,6 @@ def line_of(state: str, color: str) -> dict[str, Any]:
 
     width = WIDTHS[state] * float(rcParams["lines.linewidth"])
     return {"color": color, "linestyle": LINES[state], "linewidth": width}
-
-
-def mark_of(kind: str, graph: Graph) -> Mark:
-    """Return the mark of a kind of special points, which may be defined by the user."""
-    own = graph.own_kinds.get(kind)
-    return Mark(own.text, own.marker, own.filled) if own else MARKS.get(kind, PLAIN)
 
 
 def axis_label(name: str, unit: str | None = None, notation: Mapping[str, str] | None = None) -> str:
@@ -116,6 +100,6 @@ def label_of(survey: Survey, name: str) -> str:
         "peak": "largest response, worst of the coexisting",
         "lower_peak": "largest response, best of the coexisting",
         "peak_at": "where the largest response is",
-        "covered": "share of the interval with a stable response",
+        "covered": "share of the interval in which a response is known",
     }
     return axis_label(name, survey.units.get(name), {**survey.notation, **words})

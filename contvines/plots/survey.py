@@ -74,13 +74,13 @@ def plot_survey(
         else:
             _map(figure, drawn[0], survey, name, along)
         if along:
-            place_legend(drawn[0], (), legend, axes is None)
+            usual = "inside" if len(along) == 1 else "below"  # a map has no room inside
+            place_legend(drawn[0], (), legend, axes is None, usual=usual)
             counts = {"failed": survey.failed, "known in part": survey.partly}
-            said = [
+            notes = [
                 f"{count} of {len(survey.plan)} systems {what}" for what, count in counts.items() if count
             ]
-            if said:
-                drawn[0].set_title(", ".join(said), color="0.4", fontsize="medium")
+            drawn[0].set_title(", ".join(notes), color="0.4", fontsize="medium")
     return figure
 
 
@@ -111,8 +111,7 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     x, y = (survey.plan.axes[n] for n in along)
     values = survey.columns[name]
     if survey.plan.samples:
-        largest = np.nan_to_num(values, nan=-np.inf).max(axis=-1)
-        values = np.where(np.isnan(values).all(axis=-1), np.nan, largest)
+        values = np.fmax.reduce(values, axis=-1)  # nan only where no sample has a number
     shown = np.ma.masked_invalid(values.T)
     colours = axes.pcolormesh(x, y, shown, cmap="viridis", shading="nearest", rasterized=True)
     worst = ", worst sample" if survey.plan.samples else ""
@@ -126,11 +125,11 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
         for text in axes.clabel(lines, fmt="%.4g", fontsize="x-small", inline=False):
             text.set_path_effects([withStroke(linewidth=3.0, foreground="0.25")])
     part = (survey.notes != "") & ~survey.lost
-    marks: list[tuple[str, np.ndarray, dict[str, Any]]]
-    marks = [("failed", survey.lost, {"marker": "x", "color": RED})]
-    marks += [("known in part", part, {"marker": "o", "mfc": "none", "mec": "white"})]
-    for label, which, look in marks:
-        here = np.argwhere(which.reshape(*survey.plan.shape[:2], -1).any(axis=-1))
-        if len(here):
-            axes.plot(x[here[:, 0]], y[here[:, 1]], label=label, linestyle="none", **look)
+    for label, which, marker, edge in (
+        ("failed", survey.lost, "x", RED),
+        ("known in part", part, "o", "black"),
+    ):
+        i, j = np.nonzero(which.reshape(*survey.plan.shape[:2], -1).any(axis=-1))
+        if len(i):
+            axes.plot(x[i], y[j], marker, label=label, mec=edge, mfc="white")
     axes.grid(False)

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from ..continuation.settings import hinting
 from ..graph import Graph
-from ..shared.figures import Size, Style, drawing, narrower
+from ..shared.figures import Size, Style, drawing
 from .diagram import draw_diagram
-from .legends import NARROW, place_legend
+from .legends import place_legend
 from .style import axis_label
 
 Dots = Sequence[tuple[float, float]]
@@ -61,32 +61,24 @@ def plot_sweep(
     notation : mapping, optional
         Axis labels by name of parameter or measure; by default those of the graph.
     """
-    said, impacts = dict(units or {}), measure == "B"
-    if notation is None and graph is not None:
-        notation = graph.notation
+    units, notation = units or {}, notation or (graph.notation if graph is not None else {})
+    impacts = measure == "B"
+    which = "periodic" if not impacts else "B at every impact" if graph is None else "B at the first impact"
+    size, hollow = (2.4, {}) if impacts else (3.0, {"marker": "o", "markersize": 2.6, "mfc": "none"})
     with drawing(axes, style, figsize) as (figure, axes, own):
-        at = "" if not impacts else "B at every impact" if graph is None else "B at the first impact"
-        narrow = own and narrower(axes, NARROW)  # the label of the axis names the impact
-        told = "simulated" if narrow and impacts else f"simulated: {at or 'periodic'}"
-        lost = {"markersize": 1.5} if impacts else {"marker": "o", "markersize": 2.6, "mfc": "none"}
-        alone = impacts and graph is None
-        main = {"color": "0.45", "zorder": 2.0} if alone else {"color": "black", "zorder": 3.5}
-        size = 2.4 if impacts else 3.0
         for dots, label, look in (
-            (wandering, "simulated: not periodic", {"color": WANDERING, "zorder": 1.8, **lost}),
-            (others, "simulated: B at other impacts", {"color": "0.72", "zorder": 1.9, "markersize": size}),
-            (points, told, {"markersize": size, **main}),
+            (wandering, "not periodic", {"color": WANDERING, "zorder": 1.8, "markersize": 1.5, **hollow}),
+            (others, "B at other impacts", {"color": "0.72", "zorder": 1.9, "markersize": size}),
+            (points, which, {"color": "black", "zorder": 3.5, "markersize": size}),
         ):
             if len(dots):
-                style_of = {"linestyle": "none", "marker": ".", "label": label, **look}
-                axes.plot(*np.array(dots, float).reshape(-1, 2).T, **style_of)
+                look = {"linestyle": "none", "marker": ".", "label": f"simulated: {label}", **look}
+                axes.plot(*np.array(dots, float).reshape(-1, 2).T, **look)
         draw_bands(axes, bands)
         if not any(len(dots) for dots in (points, others, wandering)):
             axes.plot([], [], ls="none", label=f"simulated: {'no impacts' if impacts else 'nothing'}")
-        unit = f" [{said['B']}]" if "B" in said else ""
-        axes.set_xlabel(axis_label(parameter, said.get(parameter), notation))
-        up = axis_label(measure, said.get(measure), notation)
-        axes.set_ylabel(f"$B$ at the impacts{unit}" if impacts else up)
+        axes.set_xlabel(axis_label(parameter, units.get(parameter), notation))
+        axes.set_ylabel(axis_label(measure, units.get(measure), {**notation, "B": "$B$ at the impacts"}))
         if graph is not None:
             draw_diagram(axes, graph, parameter, measure, own, legend=legend)
         else:

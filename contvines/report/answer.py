@@ -173,7 +173,7 @@ class _Sheet:
         self._begin()
 
     def _begin(self) -> None:
-        from contvines.plots.figures import new_figure
+        from contvines.shared.figures import new_figure
 
         self.figure = new_figure(figsize=(WIDE / 72.0, HIGH / 72.0))
         # height of the free part's upper edge above the sheet's lower edge, in points

@@ -13,7 +13,7 @@ from ..continuation.settings import Settings
 from ..graph.contents import proof_mark, proof_text
 from ..graph.stretches import default_measure
 from ..graph.table import motion_name, short_word
-from ..plots.style import LOCI, axis_label, label_of, mark_of, mark_of_locus
+from ..plots.style import LOCI, axis_label, kind_of_locus, label_of
 from ..problems.abilities import Animated
 from ..shared.motions import attracts, onto_axis, onto_circle
 
@@ -96,10 +96,10 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
 
 
 def _point(graph: Graph, point: SpecialPoint, proof: str) -> dict[str, Any]:
-    look = mark_of(point.kind, graph)
+    kind = graph.kind(point.kind)
     return point.to_dict() | {
-        "name": look.name,
-        "marker": look.marker,
+        "name": kind.text,
+        "marker": kind.marker,
         "proof": proof,
         "index": point.index,
         "marginal": _marginal(point),
@@ -190,8 +190,8 @@ def _locus(locus: Locus) -> dict[str, Any]:
     word = locus.branch.description.get("word")
     return {
         "label": locus.label,
-        "name": mark_of_locus(locus).name,
-        "marker": mark_of_locus(locus).marker,
+        "name": kind_of_locus(locus).text,
+        "marker": kind_of_locus(locus).marker,
         "border": locus.kind not in LOCI,
         "word": None if word is None else short_word(str(word)),
         "p": shortened(locus.values[:, 0], 12),

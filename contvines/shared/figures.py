@@ -188,20 +188,20 @@ def panels(
             fit(figure)
 
 
-def fit(figure: Figure, frozen: bool = False) -> None:
-    """Lay out a figure made here: long labels are broken into lines, ticks whose labels would touch are thinned out.
-
-    Parameters
-    ----------
-    figure : Figure
-    frozen : bool
-        Keep this layout when the figure is drawn again, unless it is shown in a window.
-    """
+def fit(figure: Figure) -> None:
+    """Lay out a figure made here: long labels are broken into lines, ticks whose labels would touch are thinned out."""
     _prepare(*(axes for axes in figure.axes if not axes.yaxis.label.get_wrap()))
     settle(figure)
     thin_ticks(*figure.axes)
-    if frozen and not windows():
-        figure.set_layout_engine("none")
+
+
+def finish_layout(figure: Figure, own: bool) -> None:
+    """Compute the final positions of all axes, before labels are placed; a figure made here (`own`) keeps them, unless it is shown in a window."""
+    if own:
+        fit(figure)
+        if not windows():
+            figure.set_layout_engine("none")
+    settle(figure)
 
 
 def _prepare(*drawn: Axes) -> None:

@@ -20,9 +20,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from contvines.plots.figures import settle
 from contvines.plots.legends import place_legend
-from contvines.shared.figures import new_figure, styled
+from contvines.shared.figures import new_figure, settle, styled
 
 MASS_RATIO = 0.006
 DAMPING = 0.9

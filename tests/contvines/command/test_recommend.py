@@ -16,8 +16,8 @@ from contvines.command.recommendation import Place, Recommendation
 from contvines.command.recommending import recommend
 from contvines.command.study import check_study, read_study
 from contvines.export import json_text
-from contvines.plots.figures import new_figure
 from contvines.report.answer import BROWSERS, Answer, print_page, set_answer
+from contvines.shared.figures import new_figure
 from orbits.attractors.sweeping import sweep
 from orbits.design.references import first_clearance
 from tests.contvines.studies import EXAMPLES, data

@@ -100,9 +100,9 @@ def test_it_respects_the_users_style_and_settings_stay(name):
     function = FUNCTIONS[name][1]
     before = dict(mpl.rcParams)
     with mpl.rc_context({"axes.facecolor": "#ffeecc"}):
-        assert function().axes[0].get_facecolor()[:3] == mpl.colors.to_rgb("#ffeecc")
+        assert function().axes[0].get_facecolor() == mpl.colors.to_rgba("#ffeecc")
     figure = function(style={"axes.facecolor": "#cceeff"})
-    assert figure.axes[0].get_facecolor()[:3] == mpl.colors.to_rgb("#cceeff")
+    assert figure.axes[0].get_facecolor() == mpl.colors.to_rgba("#cceeff")
     assert dict(mpl.rcParams) == before
 
 
@@ -120,13 +120,12 @@ def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(name, size)
         assert window.width > 0.5 * page.width and window.height > 0.35 * page.height
     for one in figure.axes:
         shown = [seen_ticks(axis) for axis in (one.xaxis, one.yaxis)] if one.axison else [[], []]
-        legends = [*figure.legends, *filter(None, [one.get_legend()])]
         for thing in (
             one.xaxis.label,
             one.yaxis.label,
             one.title,
             *one.texts,
-            *legends,
+            *legends_of(figure),
             *shown[0],
             *shown[1],
         ):
@@ -136,6 +135,15 @@ def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(name, size)
                 assert box.y0 >= page.y0 - 2 and box.y1 <= page.y1 + 2, thing
         boxes = sorted((label.get_window_extent() for label in shown[0]), key=lambda box: box.x0)
         assert all(a.x1 < b.x0 for a, b in itertools.pairwise(boxes))
+
+
+def test_an_atlas_over_another_measure_has_two_axes():
+    upper, lower = plot_atlas(ATLAS, "u0").axes
+    assert (upper.get_xlabel(), lower.get_xlabel()) == ("u0", "p")
+
+
+def legends_of(figure):
+    return [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
 
 
 def seen_ticks(axis):
@@ -150,11 +158,7 @@ def seen_ticks(axis):
 def test_a_legend_can_be_left_out_or_put_somewhere(name):
     function = FUNCTIONS[name][1]
 
-    def legends(**options):
-        figure = function(**options)
-        return [*figure.legends, *(a.get_legend() for a in figure.axes if a.get_legend())]
-
-    assert legends(legend=False) == []
-    for legend in legends(legend="lower left"):
+    assert legends_of(function(legend=False)) == []
+    for legend in legends_of(function(legend="lower left")):
         box, frame = legend.get_window_extent(), legend.axes.get_window_extent()
         assert box.x0 - frame.x0 < frame.x1 - box.x1 and box.y0 - frame.y0 < 12

@@ -1,5 +1,7 @@
 """The diagram: what is drawn, marked, labelled, and what the legend says of it."""
 
+from itertools import combinations
+
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -11,9 +13,12 @@ from contvines.problems.protocol import ProblemDefaults
 from tests.contvines import fakes
 
 
-@pytest.fixture
-def graph():
-    return fakes.pitchfork_graph()
+def texts(artists):
+    return {artist.get_text() for artist in artists}
+
+
+def curves_on(axes):
+    return [line for line in axes.lines if len(line.get_xdata()) > 1]
 
 
 def dashes(state):
@@ -23,9 +28,8 @@ def dashes(state):
 
 def test_line_styles_say_stable_unstable_virtual(graph):
     axes = plot_diagram(graph).axes[0]
-    curves = [line for line in axes.lines if len(line.get_xdata()) > 1]
     seen = {}
-    for curve in curves:
+    for curve in curves_on(axes):
         seen.setdefault(curve._unscaled_dash_pattern[1], []).append(curve)
     stable = seen[None]
     lengths = {len(c.get_xdata()) for c in stable}
@@ -38,10 +42,8 @@ def test_line_styles_say_stable_unstable_virtual(graph):
 
 def test_special_points_are_marked_labelled_and_explained(graph):
     axes = plot_diagram(graph, ends=True).axes[0]
-    texts = {t.get_text() for t in axes.texts}
-    assert {"BP1", "VG1", "EP1", "B1", "B2", "B3"} <= texts
-    legend = {t.get_text() for t in axes.get_legend().get_texts()}
-    assert legend == {
+    assert {"BP1", "VG1", "EP1", "B1", "B2", "B3"} <= texts(axes.texts)
+    assert texts(axes.get_legend().get_texts()) == {
         "stable", "unstable", "virtual (beyond a border)", "branch point", "velocity graze", "end of the interval",
     }  # fmt: skip
     marks = {
@@ -54,8 +56,7 @@ def test_labels_do_not_cover_one_another(graph):
     figure = plot_diagram(graph)
     figure.canvas.draw()
     boxes = [t.get_window_extent() for t in figure.axes[0].texts]
-    for i, one in enumerate(boxes):
-        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
 
 
 def test_branches_without_the_measure_are_named_in_the_legend(graph):
@@ -75,27 +76,26 @@ def test_branches_without_the_measure_are_named_in_the_legend(graph):
         branch.problem = Problem(B)
         branch.description = {**branch.description, "word": word, "impacts": impacts}
     axes = plot_diagram(graph).axes[0]
-    assert "not drawn: B2, B3 (no impacts)" in {t.get_text() for t in axes.get_legend().get_texts()}
+    assert "not drawn: B2, B3 (no impacts)" in texts(axes.get_legend().get_texts())
 
 
 def test_chosen_labels_only(graph):
     axes = plot_diagram(graph, labels=["BP1"]).axes[0]
-    assert [t.get_text() for t in axes.texts] == ["BP1"]
+    assert texts(axes.texts) == {"BP1"}
 
 
 def test_colours_may_stand_for_stability_or_words(graph):
     axes = plot_diagram(graph, color="stability").axes[0]
     by_dash = {}
-    for line in axes.lines:
-        if len(line.get_xdata()) > 1:
-            by_dash.setdefault(line._unscaled_dash_pattern[1], set()).add(line.get_color())
+    for line in curves_on(axes):
+        by_dash.setdefault(line._unscaled_dash_pattern[1], set()).add(line.get_color())
     assert all(len(colors) == 1 for colors in by_dash.values())
     assert len(set.union(*by_dash.values())) == 3
     for branch, word in zip(graph.branches.values(), ("LR", "tt", "LR"), strict=True):
         branch.description = {**branch.description, "word": word}
     axes = plot_diagram(graph, color="word", words=True).axes[0]
-    assert {"LR", "tt"} <= {t.get_text() for t in axes.texts}
-    assert {"LR", "tt"} <= {t.get_text() for t in axes.get_legend().get_texts()}
+    assert {"LR", "tt"} <= texts(axes.texts)
+    assert {"LR", "tt"} <= texts(axes.get_legend().get_texts())
 
 
 def test_two_graphs_on_the_same_axes(graph):
@@ -105,12 +105,13 @@ def test_two_graphs_on_the_same_axes(graph):
     plot_diagram(graph, axes=axes)
     plot_diagram(fakes.pitchfork_graph(), y="u0", axes=axes, name="second")
     plot_diagram(fakes.pitchfork_graph(), axes=axes)
-    names = {t.get_text() for t in axes.texts}
+    names = texts(axes.texts)
     assert "BP1" in names and any(n.startswith("second ") for n in names)
     legend = [t.get_text() for t in axes.get_legend().get_texts()]
     assert len(legend) == len(set(legend))
-    colors = {line.get_color() for line in axes.lines if len(line.get_xdata()) > 1}
-    assert len(colors) >= 6
+    assert len({line.get_color() for line in curves_on(axes)}) >= 6
+    axes.clear()
+    assert "BP1" in texts(plot_diagram(graph, axes=axes).axes[0].texts)  # alone again
     plt.close(figure)
 
 
@@ -135,9 +136,9 @@ def test_an_angle_is_not_drawn_across_the_picture_where_it_wraps(graph):
 
     def longest(y):
         """The longest step that is drawn, and where lines have gaps."""
-        lines = [line.get_xydata() for line in plot_diagram(graph, y=y).axes[0].lines]
-        steps = np.concatenate([np.abs(np.diff(line[:, 1])) for line in lines if len(line) > 1])
-        gaps = sum(np.isnan(line[:, 1]).sum() for line in lines)
+        heights = [line.get_ydata() for line in curves_on(plot_diagram(graph, y=y).axes[0])]
+        steps = np.concatenate([np.abs(np.diff(line)) for line in heights])
+        gaps = sum(np.isnan(line).sum() for line in heights)
         return np.nanmax(steps), gaps
 
     # 8 p passes -2 pi, 0 and 2 pi on B1 (p in [-1, 1]), 2 pi on B2 (p in [0, 1]) and on B3 (p in [0.5, 1])
@@ -145,5 +146,6 @@ def test_an_angle_is_not_drawn_across_the_picture_where_it_wraps(graph):
     step, gaps = longest("turn")
     assert step < 0.8
     assert gaps == 5
-    texts = {t.get_text() for t in plot_diagram(graph, y="turn").axes[0].texts}
-    assert {"B1", "B2", "B3"} & texts  # broken lines have their labels, too
+    assert {"B1", "B2", "B3"} & texts(
+        plot_diagram(graph, y="turn").axes[0].texts
+    )  # broken lines have their labels, too

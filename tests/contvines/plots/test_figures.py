@@ -5,12 +5,6 @@ import numpy as np
 import pytest
 
 from contvines.plots import plot_diagram, plot_multipliers, plot_network, plot_portrait, save_figure
-from tests.contvines import fakes
-
-
-@pytest.fixture
-def graph():
-    return fakes.pitchfork_graph()
 
 
 def test_multipliers_are_drawn_with_the_unit_circle(graph):
@@ -32,9 +26,13 @@ def test_portrait_asks_the_orbit_first():
 
 
 def test_network_has_a_box_per_branch_and_names_the_switches(graph):
-    texts = [t.get_text() for t in plot_network(graph).axes[0].texts]
+    figure = plot_network(graph)
+    texts = [t.get_text() for t in figure.axes[0].texts]
     assert [t.split()[0] for t in texts[:3]] == ["B1", "B2", "B3"]
     assert texts[3:] == ["BP1", "VG1"]
+    figure.set_dpi(200)  # arrows end at their boxes at any resolution, the first time they are drawn
+    once, twice = (figure.canvas.draw() or np.array(figure.canvas.buffer_rgba()) for _ in range(2))
+    assert np.all(once == twice)
 
 
 def test_pictures_are_saved_shown_in_notebooks_and_the_users_settings_stay(graph, tmp_path):
