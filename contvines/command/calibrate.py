@@ -215,7 +215,7 @@ def _from_impacts(
     scales = Scales(model, model.vector(study.loose))
     second = scales.unit("time")
     (times,) = measured(path, {"time": second})
-    start = study.named_state
+    start = study.state
     if release is not None:
         displacement = scales.number("--release", release, "length")
         if "damping" not in model.parameter_names:

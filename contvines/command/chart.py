@@ -117,13 +117,37 @@ def chart(
     details: DetailsOption = False,
 ) -> None:
     """Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on."""
-    target = place_of(output, file, "-chart.vines")
-    graph, diagram, plane = _diagram(file, over, within, virtual, trust, fresh)
+    from ..shared.files import is_database
+    from .run import diagram
+    from .study import read_study
+
+    target, computed = place_of(output, file, "-chart.vines"), is_database(file)
+    section = None if computed else read_study(file).chart
+    over = over or (None if section is None else section.parameter)
+    if computed and (over is None or within is None):
+        missing = "--over" if over is None else "--within"
+        raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
+    if over is None or (within is None and section is None):
+        raise ValueError(
+            f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
+            "parameter and within."
+        )
+    if not computed:  # the diagram first
+        diagram(file, quiet=True, fresh=fresh, look=False)
+    place = file if computed else beside(file, ".vines")
+    graph = load_file(place, trust)
+    refuse_unfinished(graph, place)
+    if within is not None:
+        low, high = interval("--within", within, over, graph.units)
+    else:
+        assert section is not None
+        low, high = section.within
     refuse_detached(
         graph, *(label for label, point in graph.special.items() if point.kind not in ("end", "user"))
     )
+    plane = Plane(over, (low, high), virtual)
     with held(target, quiet, fresh):
-        found = chart_of(graph, plane, target, quiet, _source(diagram, target, plane))
+        found = chart_of(graph, plane, target, quiet, _source(place, target, plane))
     _tell(found, target, plot, quiet, details)
 
 
@@ -167,38 +191,6 @@ def chart_of(graph: Graph, plane: Plane, target: Path, quiet: bool, source: dict
     return made(
         target, fingerprint, study, quiet, lambda **to: make(graph, over, ends, virtual=virtual, **to)
     )
-
-
-def _diagram(
-    file: Path, over: str | None, within: tuple[str, str] | None, virtual: bool, trust: bool, fresh: bool
-) -> tuple[Graph, Path, Plane]:
-    """Return the diagram to chart (computed first if a study is given), its file, and the settings of the chart."""
-    from ..shared.files import is_database
-    from .run import diagram
-    from .study import read_study
-
-    computed = is_database(file)
-    section = None if computed else read_study(file).chart
-    over = over or (None if section is None else section.parameter)
-    if computed and (over is None or within is None):
-        missing = "--over" if over is None else "--within"
-        raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
-    if over is None or (within is None and section is None):
-        raise ValueError(
-            f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
-            "parameter and within."
-        )
-    if not computed:
-        diagram(file, quiet=True, fresh=fresh, look=False)
-    place = file if computed else beside(file, ".vines")
-    graph = load_file(place, trust)
-    refuse_unfinished(graph, place)
-    if within is not None:
-        ends = interval("--within", within, over, graph.units)
-    else:
-        assert section is not None
-        ends = section.within[0], section.within[1]
-    return graph, place, Plane(over, ends, virtual)
 
 
 def _source(diagram: Path, target: Path, plane: Plane) -> dict[str, Any] | None:

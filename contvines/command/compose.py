@@ -66,7 +66,7 @@ def population(study: Study):
     own = study.parameters if study.sort is Sort.FLOW else study.loose
     fixed = {name: value for name, value in own.items() if name != study.parameter}
     if study.sort is Sort.FLOW:
-        return study.flow.population_at(fixed, study.parameter, study.box)
+        return study.flow.population_at(fixed, study.parameter)
     from ..coexistence.census import population_of
 
     return population_of(study.model, study.parameter, **fixed)
@@ -88,16 +88,18 @@ def first_orbit(study: Study):
             if study.state is not None or study.flow.field.forced:
                 return study.flow.attractor_at(study.parameters, study.state)
             return study.flow.equilibria(study.parameter, study.parameters)
-        if study.sort is Sort.PAGE and study.word in (None, "") and not study.guess:
+        if study.sort is Sort.PAGE and study.start.word in (None, "") and not study.start.guess:
             return _page_start(study)
-        if study.word is None:
+        if study.start.word is None:
             return _settled(study)
         from orbits.starts.find import StartWarning
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", StartWarning)
-            orbit = study.model.orbit(study.word, study.periods, guess=study.guess, **study.loose)
+            orbit = study.model.orbit(
+                study.start.word, study.start.periods, guess=study.start.guess, **study.loose
+            )
         for warning in caught:
             print(f"contvines: {study.path}: [start] {warning.message}.", file=sys.stderr)
         return orbit
@@ -115,9 +117,9 @@ def _page_start(study: Study):
     from orbits.starts.find import StartError
 
     model, state = study.model, study.state
-    if study.word == "" and model.forced:
-        return model.orbit("", study.periods, **study.loose)
-    if study.word is None:
+    if study.start.word == "" and model.forced:
+        return model.orbit("", study.start.periods, **study.loose)
+    if study.start.word is None:
         found = model.attractor(state, **study.loose)
         if not found.recurrent and (model.forced or found.kind == "aperiodic"):
             with suppress(StartError):
@@ -135,7 +137,7 @@ def _settled(study: Study):
     from ..graph.table import short_word
 
     orbit = Family(
-        study.model, loose=study.loose, over=study.parameter, within=study.within, state=study.named_state
+        study.model, loose=study.loose, over=study.parameter, within=study.within, state=study.state
     )({})
     amount = orbit.model.amount(study.parameter, orbit.params)
     unit = study.model.units.get(study.parameter, "")

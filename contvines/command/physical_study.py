@@ -13,9 +13,8 @@ from orbits.machines.physical import units
 from orbits.machines.physical.machine import Physical, physical, tables
 from orbits.machines.physical.quantities import Quantity, QuantityError, near_quantity
 
-from .catalogue_study import built, wrong_guess
 from .schema import StudySections
-from .study_data import Sort, Study, refuse, refused, validated, wrong_intervals
+from .study_data import Sort, Study, built, refuse, refused, validated, wrong_guess, wrong_intervals
 
 OWN = ("name", "units", "unusual", "contact_time")
 SAID = ("word", "periods", "guess")
@@ -36,7 +35,7 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
     def number(name: str | None, said: object, place: str, i: int) -> object:
         if machine is not None and name in machine.tables.quantities:
             return number_of(machine.given_by(name), name, said, f"{place}[{i}]")
-        return 0.0 if isinstance(said, str) else said  # why there is no such quantity is told already
+        return float(i)  # why there is no such quantity is told already
 
     if isinstance(model, dict) and isinstance(start, dict):
         plain["start"] = {key: value for key, value in start.items() if key in SAID}
@@ -138,26 +137,26 @@ def in_numbers(
     units_of : mapping or None
         Units of measures, for the bounds; None if they are not known.
     wrong : list of str
-        Messages of errors are added to it. Numbers are inserted in place of wrong quantities, so that each error is told once.
+        Messages of errors are added to it. Lists with errors are replaced by ascending numbers, so that each error is told once.
     """
 
     def bound(measure: str | None, said: object, place: str, i: int) -> object:
         if units_of is None or not isinstance(said, str):
-            return 0.0 if units_of is None else said
+            return float(i) if units_of is None else said
         with refused(place):
             return units.counted(str(measure), said, units_of.get(str(measure), ""))
 
     def each(read: Any, name: str | None, values: object, place: str) -> object:
         if not isinstance(values, list):
             return values
-        found = []
+        found, refusals = [], []
         for i, said in enumerate(values):
             try:
                 found.append(read(name, said, place, i))
             except ValueError as error:
-                wrong.append(str(error))
-                found.append(0.0)
-        return found
+                refusals.append(str(error))
+        wrong.extend(refusals)
+        return [*map(float, range(len(values)))] if refusals else found
 
     usual = _parameter(data.get("continue"))
     found = dict(data)

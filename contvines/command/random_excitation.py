@@ -92,7 +92,7 @@ def _computed(study: Study, seed: int | None) -> Told:
     try:
         if said.parameter is not None:
             psd = Density(frequencies * turn, values / turn)
-            response = random_page(model, params, said.parameter, psd, start=study.named_state, **options)
+            response = random_page(model, params, said.parameter, psd, start=study.state, **options)
         else:
             acceleration = scales.metre * rate**2
             psd = Density(frequencies * turn / rate, values * rate / turn / acceleration**2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -125,10 +125,28 @@ def switch(
     trust: TrustOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
+    from ..continuation.settings import Settings
+    from ..graph.automatic import switch as leave
     from ..graph.schedule_branches import why_nothing_leaves
+    from ..store import Store
 
     with held(file, quiet):
-        graph, new = _switched(file, label, quiet, trust)
+        graph = load_file(file, trust)
+        refuse_unfinished(graph, file)
+        check_special(graph, file, label)
+        own = (
+            Settings().to_dict()
+        )  # without max_branches below, as a file from `trace` allows one branch only
+        settings = {k: v for k, v in graph.settings.items() if k in own and k != "max_branches"}
+        with (
+            working(f"{file} is as it was", quiet) as progress,
+            warnings.catch_warnings(action="ignore", category=UserWarning),  # the reason is printed below
+        ):
+            new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
+        if new:
+            with Store.open(file, write=True) as store:
+                store.checkpoint(graph)
+                store.tidy()
     if not quiet:
         if not new:
             typer.echo(f"{label}: {why_nothing_leaves(graph, label)}; {file} is as it was.")
@@ -137,29 +155,6 @@ def switch(
             typer.echo(
                 f"{branch.label}: {len(branch)} points, {branch.parameter} from {low:.6g} to {high:.6g}"
             )
-
-
-def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, list[Any]]:
-    """Return the graph of a file extended by the branches that leave a special point, and these new branches."""
-    from ..continuation.settings import Settings
-    from ..graph.automatic import switch as leave
-    from ..store import Store
-
-    graph = load_file(file, trust)
-    refuse_unfinished(graph, file)
-    check_special(graph, file, label)
-    own = Settings().to_dict()  # without max_branches below, as a file from `trace` allows one branch only
-    settings = {k: v for k, v in graph.settings.items() if k in own and k != "max_branches"}
-    with (
-        working(f"{file} is as it was", quiet) as progress,
-        warnings.catch_warnings(action="ignore", category=UserWarning),  # the caller prints the reason
-    ):
-        new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
-    if new:
-        with Store.open(file, write=True) as store:
-            store.checkpoint(graph)
-            store.tidy()
-    return graph, new
 
 
 def _run(
@@ -210,13 +205,6 @@ def _run(
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 
-def _budget(study: Study) -> int:
-    """Return the budget of a study's atlas, in units of work."""
-    from ..coexistence.effort import BUDGET
-
-    return study.atlas.budget or BUDGET
-
-
 def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Graph:
     """Return the graph of a study, from its file if that is finished, otherwise computed."""
     from ..graph import Graph
@@ -224,9 +212,13 @@ def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems:
 
     fingerprint = study.fingerprint(command)
     graph = finished_of(Graph, target, fingerprint, quiet, problems=problems)
-    if graph is not None and graph.stopped and (budget := _budget(study)) > graph.settings["budget"]:
-        say(f"{target} was stopped at budget = {graph.settings['budget']}: going on to {budget}.", quiet)
-        graph = None
+    if graph is not None and graph.stopped:
+        from ..coexistence.effort import BUDGET
+
+        budget = study.atlas.budget or BUDGET
+        if budget > graph.settings["budget"]:
+            say(f"{target} was stopped at budget = {graph.settings['budget']}: going on to {budget}.", quiet)
+            graph = None
     if graph is None:
         extra = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
         run, start = (run_atlas, population) if command == "atlas" else (run_diagram, first_orbit)

@@ -1,9 +1,10 @@
 """Pydantic models of the sections of a TOML study, and models of whole studies made from tables of parameters."""
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Literal, TypeVar, get_args
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -27,9 +28,19 @@ def text(expected: str, **limits: Any) -> Any:
     return Field(description=expected, **limits)
 
 
+def ascending(ends: list[float]) -> list[float]:
+    """Check that the first end of an interval is the lower one."""
+    if ends[0] < ends[1]:
+        return ends
+    raise ValueError(
+        "is empty; expected low < high" if ends[0] == ends[1] else "is reversed; give the lower end first"
+    )
+
+
 Interval = Annotated[
     list[float],
     text("two finite numbers [low, high] with low < high", min_length=2, max_length=2),
+    AfterValidator(ascending),
 ]
 Unbounded = Annotated[float, Field(allow_inf_nan=True)]
 Seed = Annotated[int, text("a whole number >= 0", ge=0)]
@@ -63,11 +74,11 @@ class FlowStart(Section):
     flow's own start. ``box`` has the ranges of the starts of an atlas and of basins.
     """
 
+    word: ClassVar[None] = None
+    periods: ClassVar[int] = 1
+    guess: ClassVar[None] = None
     state: Annotated[list[float] | None, text("one number for each state", min_length=1)] = None
-    box: Annotated[
-        list[Annotated[list[float], Field(min_length=2, max_length=2)]] | None,
-        text("a pair [low, high] for each state"),
-    ] = None
+    box: Annotated[list[Interval] | None, text("a pair [low, high] for each state")] = None
 
 
 class ContinueSection(Section):

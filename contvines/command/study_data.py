@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
@@ -17,12 +17,15 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from orbits.machines.names import PAGES
+from orbits.words import Word
 
 from ..shared.files import digest_of
 from ..shared.near_names import did_you_mean
 from .schema import (
     AtlasSection,
     ChartSection,
+    ContinueSection,
+    FlowStart,
     MachineSections,
     RandomSection,
     S,
@@ -30,10 +33,12 @@ from .schema import (
     Sections,
     SurveySection,
     SweepSection,
+    WordSection,
     kind_of,
 )
 
 if TYPE_CHECKING:
+    from orbits.machines.base import Model
     from orbits.machines.parameters import Table
 
     from ..bifurcation.kind import Kind
@@ -83,59 +88,36 @@ class Study:
         Of the machine or flow, as written in the study.
     parameters : dict
         Values of all parameters at the start.
-    parameter, within, depth, virtual
-        Of the continuation.
-    settings : dict
-        Fields of `contvines.continuation.settings.Settings` that the study sets.
-    bounds : dict
-        (low, high) by measure, at which branches end; may be infinite.
-    kinds : str or None
-        File and name of user-defined kinds of special points; `all_kinds` are these and the built-in ones, `kinds_digest` is the digest of
-        the file.
-    word, periods, guess
-        Of the first orbit.
-    state : dict, list or None
-        Initial state from which a simulation leads to the first orbit, if no word is given: by name, or for a flow in the order of its states.
+    start, continue_, sweep, atlas, chart, survey, random
+        The checked sections with these names.
     model, flow
         The machine or the flow; the other one is None.
     loose : dict
         Values of the parameters that are given with each orbit, not to the machine's constructor; for declared machines all parameters.
-    box : list or None
-        Ranges of the starts of a flow.
-    sweep, atlas, chart, survey, random
-        The sections with these names.
     text : str
         The TOML text.
     conditions : dict
         Values of the conditions.
     tables : tuple of Table
         Parameters as tables over a condition.
+    all_kinds, kinds_digest
+        The user's and the built-in kinds of special points, and the digest of the user's file, if [continue] names one.
     """
 
     path: Path
     sort: Sort
     name: str
     parameters: dict[str, float]
-    parameter: str
-    within: tuple[float, float]
-    depth: int
-    virtual: bool
-    settings: dict[str, Any]
-    bounds: dict[str, tuple[float, float]]
-    kinds: str | None
-    word: str | None = None
-    periods: int = 1
-    guess: list[list[float]] | None = None
-    state: dict[str, float] | list[float] | None = None
-    model: Any = None
-    flow: Any = None
-    loose: dict[str, float] = field(default_factory=dict)
-    box: list[list[float]] | None = None
+    start: WordSection | FlowStart
+    continue_: ContinueSection
     sweep: SweepSection = field(default_factory=SweepSection)
     atlas: AtlasSection = field(default_factory=AtlasSection)
     chart: ChartSection | None = None
     survey: SurveySection = field(default_factory=SurveySection)
     random: RandomSection | None = None
+    model: Any = None
+    flow: Any = None
+    loose: dict[str, float] = field(default_factory=dict)
     text: str = ""
     conditions: dict[str, float] = field(default_factory=dict)
     tables: tuple[Table, ...] = ()
@@ -153,40 +135,53 @@ class Study:
         **machine: Any,
     ) -> Study:
         """Make a study from its checked sections; further arguments are the attributes of the machine or flow."""
-        section = file.continue_
-        sections = {**dict(file), "model": None, **dict(file.start), **dict(section)}
-        own: dict[str, Any] = {
-            "path": path,
-            "sort": sort,
-            "name": name,
-            "parameters": parameters,
-            "within": tuple(section.within),
-            "settings": section.model_dump(include=SETTINGS, exclude_none=True),
-            "bounds": {measure: (low, high) for measure, (low, high) in section.bounds.items()},
-        }
-        shared = {entry.name: sections[entry.name] for entry in fields(cls) if entry.name in sections}
-        return cls(**shared | own | machine)
+        return cls(path, sort, name, parameters, **{**dict(file), "model": None, **machine})
 
     @property
-    def named_state(self) -> dict[str, float] | None:
-        """The initial state of a machine, by name; None for a flow, or without one."""
-        return self.state if isinstance(self.state, dict) else None
+    def parameter(self) -> str:
+        """The continuation parameter."""
+        return self.continue_.parameter
+
+    @property
+    def within(self) -> tuple[float, float]:
+        """Its interval."""
+        low, high = self.continue_.within
+        return low, high
+
+    @property
+    def state(self) -> Any:
+        """The initial state from which a simulation leads to the first orbit: by name, or for a flow in the order of its states; None if there is none."""
+        return getattr(self.start, "state", None)
+
+    @property
+    def bounds(self) -> dict[str, tuple[float, float]]:
+        """(low, high) by measure, at which branches end; may be infinite."""
+        return {measure: (low, high) for measure, (low, high) in self.continue_.bounds.items()}
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Fields of `contvines.continuation.settings.Settings` that the study sets."""
+        return self.continue_.model_dump(include=SETTINGS, exclude_none=True)
 
     @property
     def options(self) -> dict[str, Any]:
         """Arguments of `contvines.diagram` and `contvines.atlas` that the study sets."""
-        return {"depth": self.depth, "virtual": self.virtual, "settings": self.settings}
+        return {
+            "depth": self.continue_.depth,
+            "virtual": self.continue_.virtual,
+            "settings": self.settings,
+        }
 
     def describe(self) -> dict[str, Any]:
         """Return everything that determines the result, JSON-able."""
-        start: dict[str, Any] = {"word": self.word, "periods": self.periods, "guess": self.guess}
+        start: dict[str, Any] = {name: getattr(self.start, name) for name in ("word", "periods", "guess")}
         section: dict[str, Any] = {"parameter": self.parameter, "within": list(self.within), **self.options}
         if self.state and self.sort is Sort.PAGE:
             start["state"] = self.state
         if self.bounds:  # as text: JSON has no infinity
             section["bounds"] = {name: [repr(end) for end in ends] for name, ends in self.bounds.items()}
-        if self.kinds:
-            section["kinds"] = [self.kinds, self.kinds_digest]
+        if self.continue_.kinds:
+            section["kinds"] = [self.continue_.kinds, self.kinds_digest]
         more = {"conditions": self.conditions} if self.conditions else {}
         return {"model": self._model(), "start": start, "continue": section, **more}
 
@@ -210,7 +205,11 @@ class Study:
         if self.sort is Sort.PHYSICAL:
             return self.model.settings()
         if self.sort is Sort.FLOW:
-            own = {"name": self.name, "digest": self.flow.origin[2], "state": self.state, "box": self.box}
+            own = {
+                "name": self.name,
+                "digest": self.flow.origin[2],
+                **self.start.model_dump(include={"state", "box"}),
+            }
             return {**own, **self.parameters}
         own = self.model.settings() if self.sort is Sort.PAGE else {}
         # a machine file is identified by its text, not its path; a machine of the package by its name
@@ -228,13 +227,43 @@ class Study:
 
 def without_word(study: Study, refusal: object) -> str:
     """Return the error message for a study's first orbit, with a remedy if the study gives its word."""
-    if study.word is None:
+    word = study.start.word
+    if word is None:
         return str(refusal)
-    text = study.word if len(study.word) <= SHOWN else study.word[: SHOWN - 3] + "..."
+    text = word if len(word) <= SHOWN else word[: SHOWN - 3] + "..."
     return (
         f"{str(refusal).rstrip('.')}; or delete the line word = {json.dumps(text)} of [start] (periods and guess, too): "
         "the motion that settles from rest is taken then"
     )
+
+
+def wrong_guess(guess: list[list[float]] | None, machine: Model | type[Model]) -> list[str]:
+    """Return errors about the nodes of a guess with a wrong count of numbers."""
+    names = machine.node_names
+    return [
+        f"[start] guess[{i}] = {node!r} has {len(node)} numbers; each event needs [{', '.join(names)}]."
+        for i, node in enumerate(guess or ())
+        if len(node) != len(names)
+    ]
+
+
+def built(study: Study) -> Study:
+    """Return the study after checking that its machine can be made and its word is possible.
+
+    Raises
+    ------
+    StudyError
+        If not.
+    """
+    try:
+        vector = study.model.vector(study.loose)
+    except ValueError as error:
+        raise StudyError(f"[model] {error}") from error
+    try:
+        Word.parse(study.start.word or "", frictionless=study.model.frictionless(vector))
+    except ValueError as error:
+        raise StudyError(f"[start] {without_word(study, error)}") from error
+    return study
 
 
 def wrong_intervals(
@@ -261,15 +290,9 @@ def wrong_intervals(
         intervals.append(("chart", file.chart.parameter, file.chart.within))
     for section, name, (low, high) in intervals:
         reason = next(filter(None, (refusal(name, value) for value in (low, high))), "")
-        if low >= high:
-            reason = (
-                " is empty; expected low < high."
-                if low == high
-                else " is reversed; give the lower end first."
-            )
         wrong += [f"[{section}] within = {[low, high]!r}{reason}"] if reason else []
     low, high = continued.within
-    if first is not None and low < high and not low <= first <= high:
+    if first is not None and not low <= first <= high:
         text = f"{first!r} lies outside [continue] within = [{low!r}, {high!r}]"
         if unit:
             text = f"{first:g} {unit} lies outside [continue] within = [{low:g}, {high:g}] {unit}"
@@ -359,6 +382,8 @@ def _sentence(model: type[Section], loc: list[int | str], error: ErrorDetails) -
         names = re.findall(r"'([^']*)'", str(error.get("ctx", {})["expected"]))
         noun = "parameter" if key == "parameter" else "choice"
         return f"{head}: there is no such {noun}{did_you_mean(str(given), names)}; choose one of {', '.join(names)}."
+    if kind == "value_error":
+        return f"{head} {error.get('ctx', {})['error']}."
     if kind == "missing":
         head = f"{place} is missing"
     elif kind == "string_too_long":

@@ -89,7 +89,6 @@ def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily
     """Return the family of machines, or of flows, for a study's survey."""
     if study.sort is Sort.FLOW:
         assert isinstance(model, FlowProblem) and model.origin is not None
-        assert not isinstance(study.state, dict)
         file, name, _ = model.origin
         return FlowFamily(file, name, study.parameter, study.parameters, study.state, model.box)
     assert isinstance(model, Varying)
@@ -99,8 +98,8 @@ def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily
 def machines_of(study: Study, model: Varying) -> Family:
     """Return the family of machines for a study's survey."""
     return Family(
-        model, study.word, study.periods, study.guess, study.loose, study.parameter, study.within,
-        study.named_state, study.tables,
+        model, study.start.word, study.start.periods, study.start.guess, study.loose, study.parameter, study.within,
+        study.state, study.tables,
     )  # fmt: skip
 
 

@@ -275,7 +275,7 @@ def of_page(
     machine = study.model
     params, units = machine.vector(study.loose), machine.units
     second = units.get("time", "")
-    start = dict(study.named_state or {}) if release is None else _states(study, release)
+    start = dict(study.state or {}) if release is None else _states(study, release)
     run_up = _run_up(study, begin, over, second)
     rising = dict(zip(("run_up_from", "run_up_time"), run_up or ()))
     with refused(str(study.path)):

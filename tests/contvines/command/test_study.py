@@ -19,15 +19,15 @@ def test_a_good_study_is_read_with_its_defaults():
     assert read.name == "absorber"
     given = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
     assert read.parameters == {"amplitude": 0.55, **given, "frequency": 1.0}
-    assert (read.word, read.periods, read.guess) == ("LR", 1, None)
-    assert (read.parameter, read.within, read.depth, read.virtual) == ("amplitude", (0.2, 1.2), 3, False)
-    assert read.settings == {}
+    assert (read.start.word, read.start.periods, read.start.guess) == ("LR", 1, None)
+    assert (read.parameter, read.within) == ("amplitude", (0.2, 1.2))
+    assert read.options == {"depth": 3, "virtual": False, "settings": {}}
 
 
 @pytest.mark.parametrize("start", ["no start", "no start\nstart.periods = 1"])
 def test_a_study_without_a_word_begins_in_the_middle_of_its_interval(start):
     read = study(start)
-    assert read.word is None
+    assert read.start.word is None
     assert read.parameters["amplitude"] == pytest.approx(0.7)  # of 0.2 to 1.2
 
 

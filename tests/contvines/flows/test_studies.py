@@ -81,7 +81,7 @@ def test_what_a_motion_settles_on(study, done):
         (("within = [-0.2, 0.3]", "within = [0.2, 0.3]"), "lies outside"),
         (("oscillator", "pendulum"), "no flow 'pendulum'; it has oscillator"),
         (("[continue]", "[start]\nbox = [[-1.0, 1.0]]\n[continue]"), "box has 1 pair"),
-        (("[continue]", "[start]\nbox = [[-1.0, 1.0], [2.0, 1.0]]\n[continue]"), "low < high"),
+        (("[continue]", "[start]\nbox = [[-1.0, 1.0], [2.0, 1.0]]\n[continue]"), "lower end first"),
     ],
 )
 def test_bad_studies_are_refused(study, change, words):
