@@ -118,9 +118,9 @@ class Orbit(Cycle):
     @property
     def margins(self) -> list[Margin]:
         """Margins, none negative for a real orbit; in the units of the nodes."""
-        own = self._examined[2]  # only those of half the motion, if it is symmetric and can be shifted
+        margins = self._examined[2]  # only those of half the motion, if it is symmetric and can be shifted
         units = margin_units(self.word, self.model.natural_units(self.params))
-        return named_margins(self.word, own * units[: own.size])
+        return named_margins(self.word, margins * units[: margins.size])
 
     @property
     def relative_margins(self) -> list[Margin]:

@@ -194,8 +194,8 @@ class OrbitProblem(Motions):
         self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> OrbitProblem:
         """Return the problem of another word of the machine, against the same parameter; symmetric only if the machine has a mirror image."""
-        own, half = self.params if params is None else params, symmetric and self.mirrored
-        return OrbitProblem(self.model, word, periods, self.parameter, own, half, self.units)
+        numbers, half = self.params if params is None else params, symmetric and self.mirrored
+        return OrbitProblem(self.model, word, periods, self.parameter, numbers, half, self.units)
 
     def beyond(self, point: BorderPoint) -> Sequence[Seed]:
         """Return the orbits on the other side of a border, with the words that the laws of the contacts give."""

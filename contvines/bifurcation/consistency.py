@@ -105,10 +105,10 @@ def _count_differs(segment: Segment, found: Sequence[Located]) -> bool:
     for crossing in passed:
         if crossing is None:
             return False
-        others, own, certainly = crossing
-        reached = {beyond for n in others for beyond in (n, n + own) if {n, n + own} & outside}
+        others, critical, certainly = crossing
+        reached = {beyond for n in others for beyond in (n, n + critical) if {n, n + critical} & outside}
         if certainly and not marginal:
-            reached = {2 * n + own - total for n in others for total in outside & {n, n + own}}
+            reached = {2 * n + critical - total for n in others for total in outside & {n, n + critical}}
         outside = reached
     return not outside & last
 
@@ -132,15 +132,15 @@ def _count_outside(engine: Engine, event: Located) -> tuple[range, int, bool] | 
     sort = next((k for k, kinds in enumerate(PASSED_AT) if event.kind in kinds), None)
     if sort is None or event.kind == "branch-point" or event.astray:
         return None
-    spectrum, own = engine.spectrum(event.point.row), 2 if sort == 2 else 1
+    spectrum, critical = engine.spectrum(event.point.row), 2 if sort == 2 else 1
     gaps = np.abs(np.abs(spectrum) - 1.0) if sort == 2 else np.abs(spectrum - (1.0, -1.0)[sort])
     if sort == 2:
         gaps[spectrum.imag == 0.0] = np.inf
     order = np.argsort(gaps)
-    sizes, reached = np.abs(spectrum[order[own:]]), float(gaps[order[0]])
+    sizes, reached = np.abs(spectrum[order[critical:]]), float(gaps[order[0]])
     within = max(SPECTRUM_ERROR * reached, LOCATING.past)
     certain, possible = (int(np.count_nonzero(sizes > 1.0 + side)) for side in (within, -within))
-    return range(certain, possible + 1), own, reached <= engine.settings.critical
+    return range(certain, possible + 1), critical, reached <= engine.settings.critical
 
 
 def on_circle(engine: Engine, point: Solved, within: float) -> bool:

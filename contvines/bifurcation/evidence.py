@@ -71,7 +71,7 @@ def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan |
         Scan of the chunk, if it has been computed already.
     """
     rows, slopes = chunk.rows, chunk.tangents[:, -1]
-    own = np.array([test.values(chunk) for test in tests]).reshape(len(tests), len(chunk))
+    user_values = np.array([test.values(chunk) for test in tests]).reshape(len(tests), len(chunk))
     smallest = engine.smallest_margin(rows) if scanned is None else scanned.smallest
     past = spectra(engine, rows).past if scanned is None else scanned.spectra.past
     directions = np.where(np.abs(slopes) > engine.upright(float(chunk.values[0])), np.sign(slopes), 0.0)
@@ -80,9 +80,9 @@ def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan |
         directions,
         np.sign(chunk.signs),
         *(past + 1),
-        *(np.where(values >= 0.0, 1, -1) for values in (*own, *balances)),
+        *(np.where(values >= 0.0, 1, -1) for values in (*user_values, *balances)),
     ]
-    distances = [np.where(directions != 0.0, slopes, np.nan), *own, smallest - MARGIN]
+    distances = [np.where(directions != 0.0, slopes, np.nan), *user_values, smallest - MARGIN]
     return Evidence(np.column_stack(sides).astype(int), np.column_stack(distances), rows[:, 2 * engine.m :])
 
 

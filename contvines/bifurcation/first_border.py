@@ -64,9 +64,9 @@ def border_of(segment: Segment, real: bool) -> tuple[Located | None, Solved | No
         return None, None
     if not real:
         # a margin that is zero to rounding all along hides the return of those that were negative
-        own = first_zero(segment, a.nonzero()[0], real)
-        if own is not None and engine.smallest_margin(own.point.row) >= MARGIN:
-            root = own
+        returning = first_zero(segment, a.nonzero()[0], real)
+        if returning is not None and engine.smallest_margin(returning.point.row) >= MARGIN:
+            root = returning
     elif len(falling) > 1:
         still_negative = _negative_behind(segment, root, falling)
         if len(still_negative) < len(falling):

@@ -201,11 +201,11 @@ class SegmentSearch:
     def _own(self, segment: Segment) -> list[Located]:
         """Return the zeros of user-defined tests."""
         found = []
-        for number, own in enumerate(self.own):
-            if (own.at(segment.a) >= 0.0) != (own.at(segment.b) >= 0.0):
-                role = Role.STOP if own.kind.ends else Role.SPECIAL
-                events = self._zeros(own.kind, segment, [Test(own.at, number)])
-                found += [replace(event, role=role, name=own.name) for event in events]
+        for number, test in enumerate(self.own):
+            if (test.at(segment.a) >= 0.0) != (test.at(segment.b) >= 0.0):
+                role = Role.STOP if test.kind.ends else Role.SPECIAL
+                events = self._zeros(test.kind, segment, [Test(test.at, number)])
+                found += [replace(event, role=role, name=test.name) for event in events]
         return found
 
     # ------------------------------------------------------------------ where a branch ends

@@ -130,14 +130,14 @@ def _displacements(
     section: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray
 ) -> Iterator[float]:
     """Generate, for each return, log(distance of the motion from the centre / distance of the circle at the same angle), in the critical plane."""
-    own = (curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - centre) @ birth.frame.left.conj()
-    angles = np.unwrap(np.angle(own))
+    coordinates = (curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - centre) @ birth.frame.left.conj()
+    angles = np.unwrap(np.angle(coordinates))
     if angles[-1] < angles[0]:
-        own, angles = own[::-1], angles[::-1]
+        coordinates, angles = coordinates[::-1], angles[::-1]
     while np.isfinite(x := section.step(x)).all():
         z = complex((x - centre) @ birth.frame.left.conj())
         place = angles[0] + (np.angle(z) - angles[0]) % (2.0 * np.pi)
-        yield float(np.log(max(abs(z), TINY)) - np.log(np.interp(place, angles, np.abs(own))))
+        yield float(np.log(max(abs(z), TINY)) - np.log(np.interp(place, angles, np.abs(coordinates))))
 
 
 def _attracts(section: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:

@@ -121,14 +121,14 @@ def _settled(
         """Return the recorded motions; None if a problem needs user functions that are not available."""
         found = []
         for k, description in enumerate(record["problems"]):
-            own = {name: record[name][k] for name in ("word", "periods", "kind", "starts")}
-            own |= {name: float(record[name][k]) for name in MEASURED}
+            fields = {name: record[name][k] for name in ("word", "periods", "kind", "starts")}
+            fields |= {name: float(record[name][k]) for name in MEASURED}
             u = record.get(f"u{k}")
             problem = None if description is None or u is None else population.restored(description, u, p)
             if description is not None and problem is None:
                 return None
             found.append(
-                Counted(Attractor(float(p), branch=None, **own), problem, u, record.get(f"state{k}"))
+                Counted(Attractor(float(p), branch=None, **fields), problem, u, record.get(f"state{k}"))
             )
         return found
 

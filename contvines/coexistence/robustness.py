@@ -93,8 +93,8 @@ class Robustness:
     def shown_units(self) -> dict[str, str]:
         """Units of the displayed numbers, by name of parameter or coordinate."""
         named = (self.parameter, *self.parameters)
-        own = {name: self.units[name] for name in named if self.units.get(name)}
-        return own | {name: unit for name, (_, unit) in self.gauges.items()}
+        used_units = {name: self.units[name] for name in named if self.units.get(name)}
+        return used_units | {name: unit for name, (_, unit) in self.gauges.items()}
 
     def to_dict(self) -> dict[str, Any]:
         """Return the results ready for JSON, in the units given under ``units``; without a finite kick, ``kick`` and ``distance`` are None."""
@@ -351,8 +351,8 @@ class _Kicked:
 
     def _lost(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return for each start whether it does not reach the motion, and the name of the attractor reached; starts inside a wall do not count as lost."""
-        own = self._starts(self.places[:1])
-        motions, index, mirrored = self.population.settle(np.concatenate([own, starts]), self.p)
+        undisturbed = self._starts(self.places[:1])
+        motions, index, mirrored = self.population.settle(np.concatenate([undisturbed, starts]), self.p)
         names = np.array([called(m.word, m.kind) for m in motions], dtype=object)
         possible = np.array([m.kind != "impossible" for m in motions])
         lost = ((index != index[0]) | (mirrored != mirrored[0])) & possible[index]

@@ -179,9 +179,9 @@ def new(
     texts = {target: _template(f"{kind.value}.toml")}
     if kind in BESIDE:
         name = BESIDE[kind]
-        own = f"{target.stem}.py"
-        texts[target] = texts[target].replace(name, own)
-        texts[target.with_name(own)] = _template(name)
+        file_name = f"{target.stem}.py"
+        texts[target] = texts[target].replace(name, file_name)
+        texts[target.with_name(file_name)] = _template(name)
     for path in texts:
         if path.exists():
             raise ValueError(f"{path}: this file is there already; choose another name with -o")

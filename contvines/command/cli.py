@@ -123,9 +123,9 @@ class Command(TyperCommand):
 
 def command(name: str) -> TyperCommand:
     """Import and return the sub-command with a name."""
-    own = typer.Typer(add_completion=False, rich_markup_mode=None)
-    own.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
-    found = get_command(own)
+    sub_app = typer.Typer(add_completion=False, rich_markup_mode=None)
+    sub_app.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
+    found = get_command(sub_app)
     assert isinstance(found, TyperCommand)
     return found
 

@@ -87,10 +87,10 @@ def recommended(
     from .recommending import digest
     from .recommending import recommend as run
 
-    own = digest(read, cost, target)
+    expected = digest(read, cost, target)
     if place.exists():
         stored = kept(place)
-        if stored.get("digest") != own:
+        if stored.get("digest") != expected:
             raise ValueError(
                 f"{place}: this file holds another recommendation (or this one before the study was edited); --fresh sets it aside, "
                 "-o gives another name."
@@ -107,7 +107,7 @@ def recommended(
         found = run(
             read, cost=cost, target=target, workers=workers, journal=journal, tell=lambda text: say(text, quiet), progress=not quiet
         )  # fmt: skip
-    place.write_text(json_text({"digest": own, "recommendation": found.to_dict()}), encoding="utf-8")
+    place.write_text(json_text({"digest": expected, "recommendation": found.to_dict()}), encoding="utf-8")
     for path in journals:
         path.unlink(missing_ok=True)
     say(f"kept in {place}", quiet)

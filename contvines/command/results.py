@@ -86,7 +86,7 @@ def export(
 
     if to is None:
         ending = output.suffix.removeprefix(".") if output is not None else ""
-        ending = next((form for form, own in ENDINGS.items() if own == ending), ending)
+        ending = next((form for form, extension in ENDINGS.items() if extension == ending), ending)
         if ending not in Format.__members__:
             raise typer.BadParameter(
                 "the format is missing: --to csv, or a name that tells it, -o results.csv; formats are "

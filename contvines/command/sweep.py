@@ -167,11 +167,11 @@ def graph_beneath(path: Path, study: Study) -> Graph:
     own_values = {"name": model.name, **model.named(vector)}
     close = {"rel_tol": Settings.rounding, "abs_tol": TINY}
     differing = [
-        f"{name} = {other!r} there and {own!r} in the study"
-        for name, own in own_values.items()
+        f"{name} = {other!r} there and {value!r} in the study"
+        for name, value in own_values.items()
         if name != over
-        and (other := graph_values.get(name, own)) != own
-        and (isinstance(own, str) or not math.isclose(own, other, **close))
+        and (other := graph_values.get(name, value)) != value
+        and (isinstance(value, str) or not math.isclose(value, other, **close))
     ]
     if differing:
         raise ValueError(
@@ -256,10 +256,10 @@ def _drawn_impact(row: StoredRow, lines: list[tuple[Any, Any, Any]]) -> int | No
     candidates: list[tuple[float, int]] = []
     for word, values, heights in lines:
         try:
-            own = Word.parse(row.word, word.frictionless)
+            parsed = Word.parse(row.word, word.frictionless)
         except WordError:
             continue
-        if own.canonical() == word.canonical():
+        if parsed.canonical() == word.canonical():
             i = np.flatnonzero((values[:-1] - row.value) * (values[1:] - row.value) <= 0.0)
             width = values[i + 1] - values[i]
             share = (row.value - values[i]) / np.where(width == 0.0, 1.0, width)

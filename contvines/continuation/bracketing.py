@@ -124,9 +124,9 @@ class Bracket:
 
     def _add(self, x: float, fx: float) -> None:
         """Add a point to its side, and judge the secant that gave it: after one that reduced f too little, bisections follow."""
-        own = int(fx > 0.0)
-        side, aimed = self.sides[own], self.aimed
-        if aimed is not None and aimed != own:
+        positive = int(fx > 0.0)
+        side, aimed = self.sides[positive], self.aimed
+        if aimed is not None and aimed != positive:
             self.overshot = True
         elif aimed is not None and not abs(fx) < ENOUGH * abs(side.fb):
             self.wait = BISECTIONS  # f is not smooth enough
@@ -144,10 +144,10 @@ class Bracket:
         if self.wait > 0:
             self.wait -= 1
             return position
-        for own, side in enumerate(self.sides):
+        for index, side in enumerate(self.sides):
             if side.points < 2 or not abs(side.fb) < abs(side.fa):
                 continue
             step = side.fb * (side.xb - side.xa) / (side.fa - side.fb)
             if abs(step) < nearest and min(x1, x2) < side.xb + step < max(x1, x2):
-                nearest, position, self.aimed = abs(step), side.xb + step, own
+                nearest, position, self.aimed = abs(step), side.xb + step, index
         return position

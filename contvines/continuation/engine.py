@@ -49,8 +49,8 @@ NO_AIM = Aim(NOTHING, NO_COLUMNS)
 def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) -> float:
     """Return the unit of parameter differences near p: the larger one of |p| and `scale`, but at most the length of the interval."""
     size, length = -p if p < 0.0 else p, within[1] - within[0]  # called often: no function calls inside
-    own = size if size > scale else scale
-    return own if own < length else length
+    unit = size if size > scale else scale
+    return unit if unit < length else length
 
 
 def _extreme_of_rows(extreme: np.ufunc, rows: np.ndarray) -> np.ndarray:

@@ -383,10 +383,10 @@ def multiplier(row, count, kind, sort, rank):
         for j in range(count):
             if not _belongs(row[2 * j + 1], kind, sort):
                 continue
-            own = _size(row[2 * j], row[2 * j + 1], kind, sort)
-            follows = own < value or (own == value and j > taken)
-            if follows and (index < 0 or own > largest):
-                largest, index = own, j
+            size = _size(row[2 * j], row[2 * j + 1], kind, sort)
+            follows = size < value or (size == value and j > taken)
+            if follows and (index < 0 or size > largest):
+                largest, index = size, j
         value, taken = largest, index
     if kind == MAP:
         value = (math.log(value) if value < math.inf else LIMIT) if value > 0.0 else -LIMIT

@@ -150,9 +150,9 @@ def _solutions(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
         index = next((k for k, mark in branch.marks if mark == label), 0)
         named = _parameter_places(branch)
         values = [0.0] * max(named.values())
-        own = _parameters(branch)
+        parameters = _parameters(branch)
         for name, place in named.items():
-            values[place - 1] = point.value if name == branch.parameter else own[name]
+            values[place - 1] = point.value if name == branch.parameter else parameters[name]
         cycles = point.problem
         if isinstance(cycles, CycleMesh):
             orbit = point.orbit

@@ -81,8 +81,8 @@ def export(graph: Graph, to: str | None, path: str | Path) -> Path:
         raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
     path = Path(path)
     for place in places(path) if to == "auto" else (path,):
-        own = place.suffix.lstrip(".").lower()
-        check_target(place, own if to in ("auto", own) else ENDINGS.get(to, to))
+        suffix = place.suffix.lstrip(".").lower()
+        check_target(place, suffix if to in ("auto", suffix) else ENDINGS.get(to, to))
     try:
         return writers[to](graph, path) or path
     except OSError as error:
@@ -104,15 +104,15 @@ def check_target(path: Path, ending: str) -> None:
         If not; the message names the file and a valid name, or the package that must be installed.
     """
     refuse_place(path)
-    own = path.suffix.lower()
+    suffix = path.suffix.lower()
     other = path.with_suffix(f".{ending}")
-    if own in (".vines", ".toml"):
-        kind = "graphs" if own == ".vines" else "studies"
-        raise ValueError(f"{path}: names in {own} are kept for {kind}; use -o {other}.")
-    if path.is_file() and (own != f".{ending}" or is_database(path)):
+    if suffix in (".vines", ".toml"):
+        kind = "graphs" if suffix == ".vines" else "studies"
+        raise ValueError(f"{path}: names in {suffix} are kept for {kind}; use -o {other}.")
+    if path.is_file() and (suffix != f".{ending}" or is_database(path)):
         raise ValueError(
             f"{path}: this file exists and is no .{ending} file, it is left untouched; use -o {other}."
-            if own != f".{ending}"
+            if suffix != f".{ending}"
             else f"{path}: this file is a database, it is left untouched; choose another name (option -o)."
         )
     refuse_ending(path, ending)

@@ -164,8 +164,8 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
 
     def joined(self, x: np.ndarray, period: float, widths: np.ndarray) -> np.ndarray:
         """Join values at the nodes, period and widths to unknowns."""
-        own = [period] if self.free_period else []
-        return np.concatenate([np.reshape(x, -1), own, widths])
+        period_entry = [period] if self.free_period else []
+        return np.concatenate([np.reshape(x, -1), period_entry, widths])
 
     def waiting(self, u: np.ndarray, p: float, period: float) -> np.ndarray:
         """Return a guess for a nearly homoclinic cycle of another period: the time in the slowest interval is changed."""

@@ -155,8 +155,8 @@ class CycleRelatives(CycleMesh):
 
     def margin_kind(self, j: int) -> str:
         """Return the kind of border of margin j: "homoclinic", or that of an event."""
-        own = 2 * self.free_period
-        return "homoclinic" if j < own else self.flow.border_kind(j - own)
+        count = 2 * self.free_period
+        return "homoclinic" if j < count else self.flow.border_kind(j - count)
 
     def event_at(self, point: BorderPoint) -> int:
         """Return the index of the event that is touched at a border; negative if the period grows without bound there."""

@@ -179,9 +179,9 @@ class CycleProblem(CycleRelatives):
         z = np.linalg.eigvals(
             work.steps[:, None, None] * np.einsum("c,icab->iab", self.rule.weights, jacobian)
         )
-        own = np.where(np.abs(z) > most, np.abs(np.log(np.abs(self.rule.stability(z)))), np.inf)
-        least = own.argmin(axis=1)[:, None]
-        found, true = (np.take_along_axis(a, least, axis=1).sum() for a in (own, np.abs(z.real)))
+        decay = np.where(np.abs(z) > most, np.abs(np.log(np.abs(self.rule.stability(z)))), np.inf)
+        least = decay.argmin(axis=1)[:, None]
+        found, true = (np.take_along_axis(a, least, axis=1).sum() for a in (decay, np.abs(z.real)))
         return bool(found < 1.0 < true)
 
     # ------------------------------------------------------------------ accuracy and normal forms
@@ -194,9 +194,9 @@ class CycleProblem(CycleRelatives):
                 missed = work.spectrum()[1]
             except np.linalg.LinAlgError:
                 missed = 0.0
-        own = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
+        bound = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
         # the error of the trivial multiplier is a better estimate, unless its system is singular, as for nearly homoclinic orbits
-        return max(own, missed) if missed < self.flow.settings.sensible else own
+        return max(bound, missed) if missed < self.flow.settings.sensible else bound
 
     def uncertainty(self) -> float:
         """Relative accuracy of the equations: rounding only."""

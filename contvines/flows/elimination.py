@@ -106,8 +106,8 @@ def solve_cyclic(
             ],
             axis=1,
         )
-        maps, rest, own = _eliminated(np.concatenate([right[one], left[two]], axis=1), whole)
-        sign *= own
+        maps, rest, last_sign = _eliminated(np.concatenate([right[one], left[two]], axis=1), whole)
+        sign *= last_sign
         passed = np.matmul(rows[two], maps)
         foot -= passed[:, :, 2 * d :].sum(axis=0)
         rows = np.concatenate([rows[one], rows[2 * pairs :]])
@@ -121,7 +121,7 @@ def solve_cyclic(
     matrix = np.empty((d + k, d + k))
     matrix[:d, :d], matrix[:d, d:] = left[0] + closure * right[0], columns[0][:, :k]
     matrix[d:, :d], matrix[d:, d:] = rows[0] + closure * rows[1], foot[:, :k]
-    small, own = _solve(matrix, np.concatenate([columns[0][:, k:], foot[:, k:]]))
+    small, last_sign = _solve(matrix, np.concatenate([columns[0][:, k:], foot[:, k:]]))
     shared = small[d:]
     mesh = np.stack([small[:d], closure * small[:d]])
     weights = np.concatenate([shared, -np.eye(shared.shape[1])])
@@ -136,7 +136,7 @@ def solve_cyclic(
         wider[0 : 2 * pairs : 2], wider[1 : 2 * pairs : 2] = mesh[:pairs], middle
         wider[2 * pairs :] = mesh[pairs:]
         mesh = wider
-    return Solution(mesh, shared, sign * own)
+    return Solution(mesh, shared, sign * last_sign)
 
 
 def _solve(matrix: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:

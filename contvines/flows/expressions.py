@@ -283,8 +283,8 @@ def _refuse_unknown(
         *((function.body, [*fixed, *function.arguments]) for function in functions.values()),
         *((formula, list(fixed)) for formula in rates.values()),
     ]
-    for formula, own in lines:
-        allowed = {*quantities, *own}
+    for formula, extra in lines:
+        allowed = {*quantities, *extra}
         for name in sorted(formula.names - allowed):
             if name in fixed:
                 raise ValueError(
@@ -299,7 +299,7 @@ def _refuse_unknown(
                 )
             if counts.get(name, count) != count:
                 raise ValueError(f"{formula.where}: {name} has {counts[name]} argument(s), not {count}")
-        if "t" in formula.names and "t" not in own:
+        if "t" in formula.names and "t" not in extra:
             timed = timed or formula.where
     return timed
 
@@ -329,8 +329,8 @@ def _formula(text: str, where: str) -> Formula:
         isinstance(node.func, ast.Name) for node in calls
     ):
         raise ValueError(f"{where}: this is no formula: a comma or a bracket is at a wrong place")
-    own = [(node.func.id[:-1], len(node.args)) for node in calls if isinstance(node.func, ast.Name)]
-    return Formula(where, compile(tree, where, "eval"), names, own)
+    arguments = [(node.func.id[:-1], len(node.args)) for node in calls if isinstance(node.func, ast.Name)]
+    return Formula(where, compile(tree, where, "eval"), names, arguments)
 
 
 def _evaluator(

@@ -217,8 +217,8 @@ class Field:
             return found
         for group in range(pattern.count):
             mask = pattern.groups == group
-            own = mask[pattern.columns]
-            found[:, own] = self._along(mask[None], x, p, t)[0][:, pattern.indices[own]]
+            chosen = mask[pattern.columns]
+            found[:, chosen] = self._along(mask[None], x, p, t)[0][:, pattern.indices[chosen]]
         return found if self.complex_step else found / self.lengths[pattern.columns]
 
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:

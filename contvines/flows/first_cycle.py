@@ -82,7 +82,7 @@ def _guess(
 ) -> np.ndarray:
     """Unknowns of a cycle, interpolated from states at times."""
     places = mesh.node_places(mesh.rule(degree), widths)
-    own = [] if field.forced else [times[-1] - times[0]]
+    period_entry = [] if field.forced else [times[-1] - times[0]]
     if field.forced:
         period = rounds * float(field.length_of_period(p))
         places = places * period
@@ -90,7 +90,7 @@ def _guess(
     else:
         places = times[0] + places * (times[-1] - times[0])
     x = np.column_stack([np.interp(places, times, column) for column in states.T])
-    return np.concatenate([x.reshape(-1), own, widths])
+    return np.concatenate([x.reshape(-1), period_entry, widths])
 
 
 def _shortest_period(
@@ -101,8 +101,8 @@ def _shortest_period(
     A motion that spirals towards a cycle may be found to recur after several periods before it is found to recur after one.
     """
     lengths, forced, s = flow.field.lengths, flow.field.forced, flow.settings
-    own = np.ptp(orbit.states, axis=0) / lengths
-    size = lengths * np.maximum(own, s.least * own.max())
+    extent = np.ptp(orbit.states, axis=0) / lengths
+    size = lengths * np.maximum(extent, s.least * extent.max())
     near, exact = (size * share + s.still * lengths for share in (s.recurs, MESHES * flow.error))
     times = np.linspace(0.0, orbit.period, SAMPLES + 1)
     states, parts = orbit(times), np.arange(rounds if forced else MOST_TURNS, 1, -1)

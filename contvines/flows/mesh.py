@@ -250,11 +250,11 @@ def equidistributed(
     copies : int
         Number of equal parts of which the mesh consists.
     """
-    own = density(rule, widths, x, scale)
-    mean = float((own * widths).sum())
+    current = density(rule, widths, x, scale)
+    mean = float((current * widths).sum())
     if not mean > 0.0 or not np.isfinite(mean):
         return None
-    wanted = own + EVEN * mean
+    wanted = current + EVEN * mean
     parts = wanted.reshape(copies, -1).max(axis=0)
     part = widths.reshape(copies, -1)[0]
     shares = parts * part

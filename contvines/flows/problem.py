@@ -430,12 +430,12 @@ class FlowProblem(Flow):
 
         For equal motions they agree to a few digits.
         """
-        own = np.concatenate([curve.min(axis=0), curve.max(axis=0)])
+        extremes = np.concatenate([curve.min(axis=0), curve.max(axis=0)])
         if image is not None:
             other = np.concatenate([image.min(axis=0), image.max(axis=0)])
-            different = np.flatnonzero(np.abs(own - other) > self.settings.near * np.abs(own).max())
-            own = other if different.size and other[different[0]] > own[different[0]] else own
-        return own.tolist()
+            different = np.flatnonzero(np.abs(extremes - other) > self.settings.near * np.abs(extremes).max())
+            extremes = other if different.size and other[different[0]] > extremes[different[0]] else extremes
+        return extremes.tolist()
 
     def describe(self) -> dict[str, Any]:
         """Return name, start, and the data from which the flow is rebuilt if its functions can be imported."""

@@ -93,13 +93,13 @@ class ReturnMap:
                 through = self._through(i, x, p) if i < len(self.widths) else self._onto_plane(x, p)
                 x, nodes, steps, times, by_parameter = through
                 if derivatives:
-                    own = self._varied(nodes, steps, p, times, by_parameter)
+                    varied = self._varied(nodes, steps, p, times, by_parameter)
                     if i == len(self.widths):
                         speed = self._rates(x, p)
-                        delays = np.einsum("a,nab->nb", self.normal, own) / (speed @ self.normal)[:, None]
-                        own = own - speed[:, :, None] * delays[:, None, :]
-                    total = np.matmul(own[:, :, :d], total)
-                    total[:, :, d] += own[:, :, d]
+                        delays = np.einsum("a,nab->nb", self.normal, varied) / (speed @ self.normal)[:, None]
+                        varied = varied - speed[:, :, None] * delays[:, None, :]
+                    total = np.matmul(varied[:, :, :d], total)
+                    total[:, :, d] += varied[:, :, d]
         return x, total
 
     def _through(self, i: int, x: np.ndarray, p: float) -> Flight:
@@ -191,8 +191,8 @@ class ReturnMap:
                 if base is None or slow:
                     slopes = self._slopes(nodes, steps, p, times)
                 else:
-                    own = None if times is None else times[: self.rule.degree]
-                    slopes = self._slopes(base, steps[:1], p, own)
+                    first_times = None if times is None else times[: self.rule.degree]
+                    slopes = self._slopes(base, steps[:1], p, first_times)
                 inverse = self._linear(
                     slopes[..., d:], np.broadcast_to(np.eye(inner), (len(slopes), inner, inner))
                 )

@@ -159,8 +159,8 @@ def _forced(
             run = _run(field, p, points[-1], 0.0, period)
             points.append(run.y[:, -1])
             low, high = np.minimum(low, run.y.min(axis=1)), np.maximum(high, run.y.max(axis=1))
-            own = (high - low) / field.lengths
-            near = s.recurs * np.maximum(own, s.least * own.max()) + s.still
+            extents = (high - low) / field.lengths
+            near = s.recurs * np.maximum(extents, s.least * extents.max()) + s.still
             if (np.abs(points[-1] - points[0]) <= near * field.lengths).all():
                 whole = _run(field, p, points[0], 0.0, k * period, dense=True)
                 times = np.linspace(0.0, k * period, SAMPLES * k + 1)
@@ -226,8 +226,8 @@ def last_round(
 
 def _fastest(field: Field, p: float, run: OdeResult | Interpolant) -> tuple[Place, np.ndarray]:
     """The place at which a motion is fastest relative to its size, with its rate divided by the squared sizes (normal of a plane), and the sizes."""
-    own = np.ptp(run.y, axis=1) / field.lengths
-    unit = field.lengths * np.maximum(own, field.settings.least * own.max())
+    extents = np.ptp(run.y, axis=1) / field.lengths
+    unit = field.lengths * np.maximum(extents, field.settings.least * extents.max())
     rates = field(run.y.T, p)
     i = int(np.argmax(np.linalg.norm(rates / unit, axis=1)))
     return Place(float(run.t[i]), run.y[:, i], rates[i] / unit**2), unit

@@ -133,8 +133,8 @@ def _ever_a_number(run: Run, kind: Kind) -> bool:
         detector = run.detector(branch.attached)
         i = len(branch) // 2
         point = detector.engine.at_value(branch.points[i], float(branch.values[i]))
-        own = next(own for own in detector.own if own.kind is kind)
-        if point is not None and np.isfinite(own.at(point)):
+        test = next(own for own in detector.own if own.kind is kind)
+        if point is not None and np.isfinite(test.at(point)):
             return True
     return False
 
@@ -162,7 +162,7 @@ def new_run(
     if not (isinstance(depth, int) and depth >= 0):
         raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
     chosen, looked_for = Settings.of(settings), checked(kinds)
-    own = [kind.look() for kind in looked_for if kind.test is not None]
+    described = [kind.look() for kind in looked_for if kind.test is not None]
     graph = Graph(
         parameter=parameter,
         model=model,
@@ -171,7 +171,7 @@ def new_run(
             **chosen.to_dict(),
             "depth": depth,
             "virtual": virtual,
-            **({"kinds": own} if own else {}),
+            **({"kinds": described} if described else {}),
             **limits.kept(),
         },
     )

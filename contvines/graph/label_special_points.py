@@ -107,8 +107,8 @@ def mark(
     places = {i for i, _ in marks + stretches} | ({origin} if origin is not None else set())
     twins = {i for i, _ in half.events} - places
     branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
-    own = [(marking.stretch(*pair), _accuracy(engine, pair[1].point)) for pair in stretches]
-    run.graph.unresolved += _unresolved(run, branch, own)
+    unresolved = [(marking.stretch(*pair), _accuracy(engine, pair[1].point)) for pair in stretches]
+    run.graph.unresolved += _unresolved(run, branch, unresolved)
     return fresh
 
 
@@ -254,12 +254,12 @@ class _Marking(NamedTuple):
     def ending(self, label: str, kind: str, event: Located) -> Ending:
         """Return the ending of the branch at a special point."""
         point = self.run.graph.special[label]
-        own = point.branch == self.branch.label
+        on_branch = point.branch == self.branch.label
         if event.role is Role.MEETING:
-            reason = Reason.COMES_BACK if own else Reason.MEETS_SYMMETRIC
+            reason = Reason.COMES_BACK if on_branch else Reason.MEETS_SYMMETRIC
         else:
-            reason = Reason.REACHES if own else Reason.MEETS
-        found = Ending(reason, point.value, label, None if own else point.branch, kind)
+            reason = Reason.REACHES if on_branch else Reason.MEETS
+        found = Ending(reason, point.value, label, None if on_branch else point.branch, kind)
         return replace(found, reason=Reason.STOPS, text=event.name) if event.role is Role.STOP else found
 
 
@@ -275,8 +275,8 @@ def _errors(engine: Engine, special: SpecialPoint) -> list[float]:
     problem, unit = engine.problem, engine.parameter_unit(special.value)
     errors = [special.location_error, problem.uncertainty() * unit]
     if isinstance(problem, Adaptive):
-        own = mesh_error(engine, special)
-        errors.append(problem.accuracy(special.u, special.value) * unit if own is None else own)
+        of_mesh = mesh_error(engine, special)
+        errors.append(problem.accuracy(special.u, special.value) * unit if of_mesh is None else of_mesh)
     if isinstance(problem, EndsOnMesh):
         if special.kind == "homoclinic":
             errors.append(problem.remaining(special.u, special.tangent))
@@ -310,8 +310,8 @@ def origin_index(half: HalfBranch, pending: Pending) -> int | None:
 def _accuracy(engine: Engine, point: Solved) -> float:
     """Return the error of the parameter at a point, from the equations and their mesh."""
     problem = engine.problem
-    own = problem.accuracy(point.u, point.p) if isinstance(problem, Adaptive) else 0.0
-    return max(own, problem.uncertainty()) * engine.parameter_unit(point.p)
+    accuracy = problem.accuracy(point.u, point.p) if isinstance(problem, Adaptive) else 0.0
+    return max(accuracy, problem.uncertainty()) * engine.parameter_unit(point.p)
 
 
 class _Place(NamedTuple):

@@ -106,16 +106,16 @@ def graph_from_entries(
 
 def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
     """Rebuild a branch from the result of `content_of`."""
-    own = dict(content)
-    own["endings"] = _pair(
-        [Ending.said(text) for text in own.pop("ended")]  # files of version 0.1 have sentences
-        if "ended" in own
-        else [Ending.from_dict(ending) for ending in own["endings"]]
+    entry = dict(content)
+    entry["endings"] = _pair(
+        [Ending.said(text) for text in entry.pop("ended")]  # files of version 0.1 have sentences
+        if "ended" in entry
+        else [Ending.from_dict(ending) for ending in entry["endings"]]
     )
-    if own["description"].get("spectrum") == "none":
-        own["stable"] = None  # "unstable" in files up to version 0.1
-    own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
-    return Branch(problem=problem, **own)
+    if entry["description"].get("spectrum") == "none":
+        entry["stable"] = None  # "unstable" in files up to version 0.1
+    entry["marks"] = tuple((int(i), str(name)) for i, name in entry["marks"])
+    return Branch(problem=problem, **entry)
 
 
 def content_of(entry: DataclassInstance) -> dict[str, Any]:

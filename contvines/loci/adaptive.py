@@ -112,20 +112,20 @@ class AdaptiveLocus(LocusProblem):
 
     def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
         """Return the interpolation of unknowns, or directions, to a better mesh; None if the mesh is good."""
-        own = self.mesh.adapted(u[: self.size])
-        if own is None:
+        adapted = self.mesh.adapted(u[: self.size])
+        if adapted is None:
             return None
 
         def image(v: np.ndarray, direction: bool = False) -> np.ndarray:
-            return np.concatenate([own(v[: self.size], direction), v[self.size :]])
+            return np.concatenate([adapted(v[: self.size], direction), v[self.size :]])
 
         return image
 
     def terms(self, u: np.ndarray) -> np.ndarray:
         """Sizes of the terms of the equations of the cycle, and of the locus."""
-        own = np.ones(self.dimension) if self.scales is None else self.scales.rows.copy()
-        own[: self.size] = self.mesh.terms(u[: self.size])
-        return own
+        rows = np.ones(self.dimension) if self.scales is None else self.scales.rows.copy()
+        rows[: self.size] = self.mesh.terms(u[: self.size])
+        return rows
 
     def lags(self, u: np.ndarray) -> bool:
         """Whether the error of the cycle on its mesh is too large."""

@@ -183,11 +183,11 @@ class Chart(Resumable):
         """Generate the chart's entries of a file as (kind, key, content)."""
         yield "chart", "chart", fields_of(self, "loci", "points", "regions")
         for locus in self.loci.values():
-            own = fields_of(locus, "branch", "marked", "kinds")
-            own["marks"] = None if locus.marked is None else locus.marks
-            own["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
+            fields = fields_of(locus, "branch", "marked", "kinds")
+            fields["marks"] = None if locus.marked is None else locus.marks
+            fields["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
             branch = {f"branch_{name}": value for name, value in content_of(locus.branch).items()}
-            yield "locus", locus.label, {**own, **branch}
+            yield "locus", locus.label, {**fields, **branch}
         for point in self.points.values():
             yield "plane-point", point.label, fields_of(point, "problem")
         for i, region in enumerate(self.regions):
@@ -215,7 +215,7 @@ def chart_from_entries(
     chart = Chart(**head)
     marks: dict[str, list[tuple[int, str]] | None] = {}
     for label, content in entries.get("locus", {}).items():
-        own = {k: v for k, v in content.items() if not k.startswith("branch_")}
+        entry = {k: v for k, v in content.items() if not k.startswith("branch_")}
         parts = {k.removeprefix("branch_"): v for k, v in content.items() if k.startswith("branch_")}
         problem = None
         if problems:
@@ -223,18 +223,18 @@ def chart_from_entries(
                 problem = rebuild(parts["description"], trust)
             except UnknownFactory:
                 problem = None
-        own["parameters"], own["within"] = tuple(own["parameters"]), tuple(own["within"])
-        marks[label] = own.pop("marks")
-        own["turns"] = tuple(Turn(int(i), (float(p), float(q))) for i, p, q in own["turns"])
-        chart.loci[label] = Locus(branch=branch_of(parts, problem), **own)
+        entry["parameters"], entry["within"] = tuple(entry["parameters"]), tuple(entry["within"])
+        marks[label] = entry.pop("marks")
+        entry["turns"] = tuple(Turn(int(i), (float(p), float(q))) for i, p, q in entry["turns"])
+        chart.loci[label] = Locus(branch=branch_of(parts, problem), **entry)
     for label, content in entries.get("plane-point", {}).items():
-        own = dict(content)
+        entry = dict(content)
         for name in ("parameters", "value", "margins"):
-            own[name] = tuple(own[name])
-        loci = [chart.loci[name].problem for name in own["on"] if name in chart.loci]
-        owners = [each for each in loci if each is not None and each.size == len(own["u"])]
-        problem = owners[0].at(own["value"][1]) if owners else None
-        chart.points[label] = PlanePoint(problem=problem, **own)
+            entry[name] = tuple(entry[name])
+        loci = [chart.loci[name].problem for name in entry["on"] if name in chart.loci]
+        owners = [each for each in loci if each is not None and each.size == len(entry["u"])]
+        problem = owners[0].at(entry["value"][1]) if owners else None
+        chart.points[label] = PlanePoint(problem=problem, **entry)
     for label, found in marks.items():
         if found is not None:
             chart.loci[label].marked = tuple((int(i), chart.points[name]) for i, name in found)

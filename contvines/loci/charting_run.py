@@ -182,9 +182,9 @@ class Charting:
     def trace(self, candidate: Candidate) -> Locus | None:
         """Return the locus of a candidate; None if it cannot be traced, with the reason added to ``refused``."""
         # a locus has the label of the special point at which it starts
-        own = candidate.seed in self.graph.special
+        from_diagram = candidate.seed in self.graph.special
         prefix = kind_named(candidate.kind).label
-        label = candidate.seed if own else self.label(prefix)
+        label = candidate.seed if from_diagram else self.label(prefix)
         arguments = self.over, self.within, self.bounds, self.settings, label, self.virtual, self.journal
         try:
             locus = trace_locus(candidate, *arguments, self.tell_points)
@@ -192,7 +192,7 @@ class Charting:
             self.refused.append(f"{candidate.seed}: {error}")
             locus = None
         if locus is None or len(locus) < 3:
-            self.numbers[prefix] -= 0 if own else 1
+            self.numbers[prefix] -= 0 if from_diagram else 1
             return None
         return locus
 

@@ -94,11 +94,11 @@ def mark(
     tuple of (int, PlanePoint)
         All points on the locus, each with the index of the locus's point before it.
     """
-    own, marked = {kind.name: kind for kind in locus.kinds}, dict[str, Found]()
+    by_name, marked = {kind.name: kind for kind in locus.kinds}, dict[str, Found]()
     for index, point in find(locus):
         before = next((other for other in known.values() if same(point, other)), None)
         if before is None:
-            point.label = label((own.get(point.kind) or CODIMENSION_TWO[point.kind]).label)
+            point.label = label((by_name.get(point.kind) or CODIMENSION_TWO[point.kind]).label)
             point.coefficients = point.coefficients or coefficients(point)
             before = known[point.label] = point
         if locus.label not in before.on:

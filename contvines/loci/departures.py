@@ -255,8 +255,8 @@ def homoclinic_of(point: PlanePoint, bounds: Interval, within: Interval) -> Iter
     if not isinstance(problem, Equilibria):
         return
     units = [
-        high - low if np.isfinite(high - low) else max(abs(own), 1.0)
-        for (low, high), own in zip((bounds, within), (p, q))
+        high - low if np.isfinite(high - low) else max(abs(value), 1.0)
+        for (low, high), value in zip((bounds, within), (p, q))
     ]
     over = point.parameters[1]
     try:

@@ -67,8 +67,8 @@ class Plane(Linearisation):
         tests = 2.0 * upper.real if self.flow else np.abs(upper) ** 2 - 1.0
         places = np.abs(upper) ** 2 if self.flow else upper.real
         unit = 1.0 + abs(reference) if self.flow else 1.0
-        own = int(np.argmin(np.abs(tests) + 0.1 * np.abs(places - reference) / unit))
-        rest = [i for i in range(len(upper)) if i != own]
+        nearest = int(np.argmin(np.abs(tests) + 0.1 * np.abs(places - reference) / unit))
+        rest = [i for i in range(len(upper)) if i != nearest]
         return float(tests[min(rest, key=lambda i: abs(places[i] - second))])
 
     # ------------------------------------------------------------------ along the branches

@@ -179,8 +179,8 @@ class LocusProblem(ProblemDefaults):
         self.kernels = TableKernels(native_table("core_loci_table")) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
         options = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
-        own = None if own_kind is None else self._own_condition
-        self.data = Data(self.first.data, self.second.data, self.first.kernels, *options, own=own)
+        evaluate = None if own_kind is None else self._own_condition
+        self.data = Data(self.first.data, self.second.data, self.first.kernels, *options, own=evaluate)
         if isinstance(kernels, TableKernels) and self.compiled:
             places = memory_of(self.first.data), memory_of(self.second.data)
             self.data = self.data._replace(memory=pack(kernels.table, *places, *options))
@@ -219,12 +219,12 @@ class LocusProblem(ProblemDefaults):
             if scales is not None:
                 largest = float(scales.unknowns.max())
                 # an unknown that is zero along the whole branch gets the largest scale
-                own = np.where(scales.unknowns < SCALING.unseen * largest, largest, scales.unknowns)
+                sizes = np.where(scales.unknowns < SCALING.unseen * largest, largest, scales.unknowns)
                 if self.base.scales_learned:
                     # the motion changes more along a locus: use the scales of a branch in the second parameter, too
                     moved = self.second.scale_within(within)[:-1]
-                    own = np.maximum(own, np.minimum(moved, FURTHER * own))
-                scale[: self.size], scale[self.size] = own, scales.parameter
+                    sizes = np.maximum(sizes, np.minimum(moved, FURTHER * sizes))
+                scale[: self.size], scale[self.size] = sizes, scales.parameter
                 self.rows[:] = scales.rows
             scale[-1] = second
         self.sizes[: self.size + 1] = scale[: self.size + 1]
@@ -234,8 +234,8 @@ class LocusProblem(ProblemDefaults):
     def sizes_at(self, u: np.ndarray, p: float, q: float) -> np.ndarray:
         """Return sizes of (u, p, q) near a place, relative to which changes are measured."""
         parameters = self.unit * self.sizes[self.size], self.sizes[self.dimension]
-        own = np.append(self.sizes[: self.size], parameters)
-        return np.maximum(own, np.abs(np.append(u, [p, q])))
+        sizes = np.append(self.sizes[: self.size], parameters)
+        return np.maximum(sizes, np.abs(np.append(u, [p, q])))
 
     # ------------------------------------------------------------------ unknowns and related problems
     def split(self, U: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -270,10 +270,10 @@ class LocusProblem(ProblemDefaults):
 
     def margin_kind(self, j: int) -> str:
         """Return the kind of border of margin j: that of the problem, "end" if p leaves its interval, "resonance" if a pair becomes real."""
-        own = int(self.base.n_margins)
-        if j < own:
+        count = int(self.base.n_margins)
+        if j < count:
             return self.base.margin_kind(j)
-        return "resonance" if j == own + 2 else "end"
+        return "resonance" if j == count + 2 else "end"
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Return multipliers over the full period from raw ones."""

@@ -136,14 +136,14 @@ def divide(
     depth = distance_transform_edt(padded)[1:-1, 1:-1]  # type: ignore[index]
     regions = []
     for number in range(1, count + 1):
-        own = marked == number
-        size = int(own.sum())
+        cells = marked == number
+        size = int(cells.sum())
         if size < SMALLEST:
             continue
-        inner = np.where(own, depth, -1.0)
+        inner = np.where(cells, depth, -1.0)
         (p, q), *more = lows + (_places(inner, size / CELLS**2) + 0.5) / CELLS * widths
         further = [{"at": [float(a), float(b)], "attractors": []} for a, b in more]
-        regions.append(Region((float(p), float(q)), size / CELLS**2, [], own, further))
+        regions.append(Region((float(p), float(q)), size / CELLS**2, [], cells, further))
     return sorted(regions, key=lambda region: -region.share)
 
 

@@ -79,8 +79,8 @@ def sought(locus: LocusProblem, kinds: Sequence[Kind] = ()) -> Iterator[Sought]:
     if locus.condition != OWN:
         yield from _multipliers(locus)
         yield from borders(locus)
-    for own in kinds:
-        yield Sought(own.name, partial(_of_own_test, own), partial(_of_own_kind, own))
+    for kind in kinds:
+        yield Sought(kind.name, partial(_of_own_test, kind), partial(_of_own_kind, kind))
 
 
 def _multipliers(locus: LocusProblem) -> Iterator[Sought]:

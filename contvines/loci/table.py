@@ -183,7 +183,7 @@ def chart_summary(chart: Chart, width: int | None = None) -> str:
     rows = []
     for each in (loci, points):
         for kind, count in Counter(kind for kind, _ in each).most_common():
-            values = np.concatenate([values for own, values in each if own == kind])
+            values = np.concatenate([values for kind_of, values in each if kind_of == kind])
             ranges = (spread([values[:, k].min(), values[:, k].max()], number[k]) for k in (1, 0))
             rows.append((kind, str(count), *ranges))
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)

@@ -292,8 +292,8 @@ class AlgebraicProblem(CallableProblem):
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Return the named measures, each of shape (m,), of m solutions."""
         u = np.atleast_2d(u)[:, : self.node]
-        own = self.outputs.measures([name for name in names if name in self.outputs.names], u, p)
-        return {**super().measures([name for name in names if name not in own], u, p), **own}
+        outputs = self.outputs.measures([name for name in names if name in self.outputs.names], u, p)
+        return {**super().measures([name for name in names if name not in outputs], u, p), **outputs}
 
     # ------------------------------------------------------------------ motions of u' = F(u, p)
     def simulated_attractors(self, p: float, starts: int = 12) -> list[dict[str, Any]]:

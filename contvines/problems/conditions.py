@@ -61,16 +61,16 @@ class Conditions:
         self, u: np.ndarray, p: float, functions: Differentiated, values: ParameterSet
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the extended system, its Jacobian and its parameter derivative."""
-        n, own, amounts = self.node, u[: self.node], u[self.node :]
+        n, state, amounts = self.node, u[: self.node], u[self.node :]
         self.functions.parameters = values
         jacobian = np.zeros((n + self.count, n + self.count))
-        jacobian[:n, :n] = functions.dense_jacobian(own, p)
+        jacobian[:n, :n] = functions.dense_jacobian(state, p)
         jacobian[:n, n:] = self.directions
-        jacobian[n:, :n] = self.functions.dense_jacobian(own, p)
+        jacobian[n:, :n] = self.functions.dense_jacobian(state, p)
         return (
-            np.append(functions.value(own, p) + self.directions @ amounts, self.functions.value(own, p)),
+            np.append(functions.value(state, p) + self.directions @ amounts, self.functions.value(state, p)),
             jacobian,
-            np.append(functions.derivative(own, p), self.functions.derivative(own, p)),
+            np.append(functions.derivative(state, p), self.functions.derivative(state, p)),
         )
 
     def eigenvalues(self, jacobian: np.ndarray) -> np.ndarray:

@@ -281,8 +281,8 @@ class MapProblem(CallableProblem):
         """The points of the shortest cycle of which u is a repetition, and the largest differences between equal points."""
         nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
         signs = self.pieces.signs.reshape(n, -1)
-        own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
-        scale = IDENTITY.same * (own + np.abs(nodes).max(axis=0))
+        scales = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
+        scale = IDENTITY.same * (scales + np.abs(nodes).max(axis=0))
         root = next(
             r
             for r in range(1, n + 1)
@@ -334,12 +334,12 @@ class MapProblem(CallableProblem):
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Return the named measures, each of shape (m,), of m solutions."""
         nodes = np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)
-        own = [name for name in names if name in self.outputs.names]
-        result = self.outputs.measures(own, nodes[:, 0], p)
+        outputs = [name for name in names if name in self.outputs.names]
+        result = self.outputs.measures(outputs, nodes[:, 0], p)
         for name in names:
             if name not in self.measure_names:
                 raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
-            if name in own:
+            if name in outputs:
                 continue
             kind = name.rstrip("0123456789")
             j = int(name[len(kind) :] or 0)

@@ -350,20 +350,20 @@ class Scout:
         certain = bends | self.known
         # a zero moved by rounding has no size of its own
         least = np.where(np.asarray(self.problem.u0) == 0.0, SCALES.faint, SCALES.rounding)
-        own = np.where(size > np.where(certain, least * first, 0.0), size, first)
+        sizes = np.where(size > np.where(certain, least * first, 0.0), size, first)
         moved = extent[:-1] > np.where(
-            bends, SCALES.moves * np.minimum(first, own), SCALES.barely * np.where(certain, first, own)
+            bends, SCALES.moves * np.minimum(first, sizes), SCALES.barely * np.where(certain, first, sizes)
         )
         rest = np.where(certain, first, np.where(size > 0.0, size, 1.0))
         for j, reach in lost.items():
             moved[j], rest[j] = False, first[j] if certain[j] else reach
         learned = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
-        own = np.maximum(np.where(moved, learned, rest), SCALES.barely * size)
+        sizes = np.maximum(np.where(moved, learned, rest), SCALES.barely * size)
         far = (extent[:-1] > SCALES.moves * size) | (np.where(bends, extent[:-1], 0.0) > first)
         travelled = bool(np.any(far)) or bool(extent[-1] > SCALES.travelled * self.width)
         if not travelled:  # nothing was learned: use the unknowns' own sizes, and the whole interval
-            own = np.where(size > 0.0, size, 1.0)
-        unknowns = in_fields(own) if given is None else given
+            sizes = np.where(size > 0.0, size, 1.0)
+        unknowns = in_fields(sizes) if given is None else given
         unit_learned = min(self.width, 2.0 * extent[-1])
         unit = float(unit_learned) if travelled and extent[-1] > 0.0 else self.width
         rows = np.where(self.rows > 0.0, self.rows, 1.0)

@@ -56,12 +56,12 @@ def styled(style: Style = None) -> Iterator[None]:
     import matplotlib as mpl
     from matplotlib.style import context, library
 
-    own = _changed(mpl.rcParams, mpl.rcParamsDefault)
+    changes = _changed(mpl.rcParams, mpl.rcParamsDefault)
     chosen: list[Any] = (
         list(map(str.strip, style.split(","))) if isinstance(style, str) else [dict(style or {})]
     )
     with ExitStack() as stack:
-        stack.enter_context(context(["default", DEFAULT_STYLE, own]))
+        stack.enter_context(context(["default", DEFAULT_STYLE, changes]))
         for name in chosen:
             try:
                 stack.enter_context(context(STYLES.get(name, name) if isinstance(name, str) else name))

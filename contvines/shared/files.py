@@ -102,8 +102,8 @@ def refuse_ending(path: Path, ending: str) -> None:
         raise ValueError(
             f"{path}: results are kept in files, not written to the standard output; use -o result.{ending}."
         )
-    own = path.suffix.lower().removeprefix(".")
-    if own in ENDINGS and own != ending and own not in OTHER_ENDINGS.get(ending, ()):
+    suffix = path.suffix.lower().removeprefix(".")
+    if suffix in ENDINGS and suffix != ending and suffix not in OTHER_ENDINGS.get(ending, ()):
         raise ValueError(
             f"{path}: this is not a .{ending} file by its name; use -o {path.with_suffix('.' + ending)}."
         )

@@ -262,8 +262,8 @@ def share(found: Findings, word: str) -> dict[str, float]:
         by_value: dict[float, float] = {}
         for attractor in attractors:
             if attractor.starts == most:
-                own = attractor.share if attractor.word == word else 0.0
-                by_value[attractor.value] = by_value.get(attractor.value, 0.0) + own
+                on_word = attractor.share if attractor.word == word else 0.0
+                by_value[attractor.value] = by_value.get(attractor.value, 0.0) + on_word
         shares = list(by_value.values())
         return {f"share_{word}": float(np.mean(shares)), f"share_{word}_least": min(shares)}
     words = [name for _, _, name in found.simulated]

@@ -181,7 +181,7 @@ class Rounds(NamedTuple):
         keys = choices(most)
         sides, products = sides_of_cycles(self.maps, np.array(keys))
         farther = sides if self.further is None else sides_of_cycles(self.further, np.array(keys))[0]
-        own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
+        old, new = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
         finite = np.isfinite(products).all(axis=(1, 2))
         largest = np.full(len(keys), np.nan)  # moduli of multipliers
         largest[finite] = np.abs(np.linalg.eigvals(products[finite])).max(axis=1)
@@ -192,10 +192,10 @@ class Rounds(NamedTuple):
             if self.linear:
                 virtual = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
             elif self.further is not None and _lasts(-low, -before[0]) and _lasts(high, before[1]):
-                virtual = key[0] * self.error * max(float(np.abs(product).max()), own * other) < ROUNDING.sure
+                virtual = key[0] * self.error * max(float(np.abs(product).max()), old * new) < ROUNDING.sure
             else:
                 virtual = False
-            if virtual or (key[0] > 2 and size > UNSTABLE + self._rounding(*key, own, other)):
+            if virtual or (key[0] > 2 and size > UNSTABLE + self._rounding(*key, old, new)):
                 hopeless.add(key)
         return hopeless
 

@@ -103,11 +103,13 @@ class Switch:
             If the crossings do not alternate.
         """
         n = len(letters)
-        own = [i for i in range(n) if letters[i].contact == j]
-        places = sorted([*own, *hits])
+        crossings = [i for i in range(n) if letters[i].contact == j]
+        places = sorted([*crossings, *hits])
         if not places:
             return [next(iter(noted.values()), 1)] * n
-        fixed = {i: letters[i].sign for i in own} | {i: sign for i, sign in hits.items() if sign is not None}
+        fixed = {i: letters[i].sign for i in crossings} | {
+            i: sign for i, sign in hits.items() if sign is not None
+        }
         last = [bisect_right(places, i) - 1 for i in range(n)]  # -1: the last one, cyclically
         after = {places[last[i]]: sign for i, sign in noted.items()} | fixed
         for k, i in enumerate(places):  # a crossing determines the sign before it
@@ -171,9 +173,9 @@ class Switch:
     def collapsed(self, site: Site, j: int) -> list[Change]:
         """Return the changes if two consecutive crossings coincide, or one coincides with an impact that jumps over the surface."""
         word, place = site.word, site.place
-        for hit, own in ((place, place + 1), (place + 1, place)):
+        for hit, crossing in ((place, place + 1), (place + 1, place)):
             jumped = (word.letter(hit).contact, j) in word.alphabet.flips
-            if jumped and place + 1 < len(word) and site.is_event(own, j, SWITCH):
+            if jumped and place + 1 < len(word) and site.is_event(crossing, j, SWITCH):
                 events, modes, spots = (word.events[hit],), (word.mode(place + 1),), (Spot(hit),)
                 return [
                     Change(place, place + 2, events, modes, spots, Grows.MARGIN, WordChange.CROSSING_VANISHES)

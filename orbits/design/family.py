@@ -333,9 +333,9 @@ class _SweptMotions:
 
     def knows(self, row: SweepRow) -> bool:
         """Whether this motion is listed at its value already; all motions without a period count as one."""
-        listed, own = [other for other in self.rows if other.value == row.value], self.response(row)
+        listed, response = [other for other in self.rows if other.value == row.value], self.response(row)
         return any(
-            abs(self.response(other) - own) <= DESIGNING.agreement * abs(own)
+            abs(self.response(other) - response) <= DESIGNING.agreement * abs(response)
             if row.periods and other.periods
             else row.periods == other.periods
             for other in listed

@@ -142,34 +142,34 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
     hits: list[tuple[float, float, float]] = []
     largest = np.zeros(machine.size)
     has_energy = machine.equations.energy is not None
-    for own, run, shift in legs:
-        speed = float(own.phase_speed(run.params))
+    for stage, run, shift in legs:
+        speed = float(stage.phase_speed(run.params))
         length = run.finish - run.clocks[0]
-        period = TWO_PI if own.forced else TWO_PI / float(machine.phase_speed(run.params))
+        period = TWO_PI if stage.forced else TWO_PI / float(machine.phase_speed(run.params))
         clocks = run.clocks[0] + np.linspace(0.0, length, max(2, math.ceil(length / period * PER_PERIOD)) + 1)
         rows = run.sample(clocks)
         times.append(clocks / speed + shift)
         states.append(rows[:, : machine.size])
-        phases = np.mod(clocks, TWO_PI) if own.forced else np.zeros(len(clocks))
+        phases = np.mod(clocks, TWO_PI) if stage.forced else np.zeros(len(clocks))
         if has_energy:
-            numbers = np.zeros((len(rows), len(run.params) + len(own.equations.signed)))
+            numbers = np.zeros((len(rows), len(run.params) + len(stage.equations.signed)))
             numbers[:, : len(run.params)] = run.params
-            energy.append(own.compiled.energy()(rows, phases, numbers)[:, 0])
+            energy.append(stage.compiled.energy()(rows, phases, numbers)[:, 0])
         ends = np.append(run.clocks[1:], run.finish)
         for i, (begin, end) in enumerate(zip(run.clocks, ends)):
-            turn = TWO_PI * math.floor(begin / TWO_PI) if own.forced else 0.0
+            turn = TWO_PI * math.floor(begin / TWO_PI) if stage.forced else 0.0
             span, lost = (begin - turn, end - turn), 0.0
             if i and run.events[i - 1][1] == HIT:
                 wall = run.events[i - 1][0]
-                clock = np.array([span[0] if own.forced else 0.0])
-                impact = Impacts(own, wall, run.states[i : i + 1], clock, run.params[None])
+                clock = np.array([span[0] if stage.forced else 0.0])
+                impact = Impacts(stage, wall, run.states[i : i + 1], clock, run.params[None])
                 hits.append((begin / speed + shift, float(impact.speeds[0]), float(impact.impulses[0])))
                 lost = float(impact.losses[0])
-            sizes = np.abs(farthest(own, run.modes[i], run.states[i], *span, run.params)).max(axis=0)
+            sizes = np.abs(farthest(stage, run.modes[i], run.states[i], *span, run.params)).max(axis=0)
             largest = np.maximum(largest, sizes[: machine.size])
             rubbed = (
-                friction_work(own, run.modes[i], run.states[i], *span, run.params)
-                if has_energy and own.equations.limit
+                friction_work(stage, run.modes[i], run.states[i], *span, run.params)
+                if has_energy and stage.equations.limit
                 else 0.0
             )
             taken.append((begin / speed + shift, lost, 0.0))

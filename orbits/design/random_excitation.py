@@ -244,10 +244,10 @@ def random_page(
     place = machine.place_of(excited)
     if excited == machine.phase_rate:
         raise ParameterError(f"{excited} sets the clock of {machine.name!r}; let another parameter be random")
-    own, e = f"p_{excited}", machine.equations
+    parameter, e = f"p_{excited}", machine.equations
     for kind in (e.gap, e.surface, e.velocity):
         for j, value in kind.items():
-            if own in variables_of(value):
+            if parameter in variables_of(value):
                 raise ParameterError(
                     f"{excited}: {e.contacts[j].described} depends on it, which must not jump; let a force or an acceleration be random"
                 )

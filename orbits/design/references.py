@@ -145,9 +145,9 @@ def friction_damper(
     drag = mass_ratio * damping * omega
     stuck = force / np.abs(1.0 - (1.0 + mass_ratio) * omega**2 + 1j * drag)
     found = stuck.copy()
-    own = (4.0 / math.pi) * pull  # first harmonic of friction, as an acceleration of the absorber
-    for i in np.flatnonzero(stuck * omega**2 > own):
-        found[i] = _sliding(float(omega[i]), float(force[i]), float(drag[i]), mass_ratio, own)
+    friction = (4.0 / math.pi) * pull  # first harmonic of friction, as an acceleration of the absorber
+    for i in np.flatnonzero(stuck * omega**2 > friction):
+        found[i] = _sliding(float(omega[i]), float(force[i]), float(drag[i]), mass_ratio, friction)
     return found.reshape(np.shape(frequency))
 
 

@@ -256,8 +256,8 @@ def _bare(times: np.ndarray, numbers: dict[str, float], omega: float) -> np.ndar
         return 0.5 * size.real * (np.sin(times) - times * np.cos(times))
     answer = size / below
     steady = np.imag(answer * np.exp(1j * omega * times))
-    own = complex(-0.5 * damping, math.sqrt(1.0 - 0.25 * damping * damping))
+    root = complex(-0.5 * damping, math.sqrt(1.0 - 0.25 * damping * damping))
     # the free motion Re(a exp(own t)) cancels displacement and speed of the steady motion at time 0
     place, speed = float(np.imag(answer)), float(np.imag(1j * omega * answer))
-    a = complex(-place, (speed - own.real * place) / own.imag)
-    return steady + np.real(a * np.exp(own * times))
+    a = complex(-place, (speed - root.real * place) / root.imag)
+    return steady + np.real(a * np.exp(root * times))

@@ -183,10 +183,10 @@ class Equations(ABC, Generic[ModelOf]):
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Return the unknowns, shape (N,), from the nodes of the whole cycle."""
-        own = np.array(nodes[: self.length], dtype=float, order="C")
+        reduced = np.array(nodes[: self.length], dtype=float, order="C")
         if self.units != PLAIN:
-            own /= self.unit[: self.length]
-        return own.ravel()
+            reduced /= self.unit[: self.length]
+        return reduced.ravel()
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
         """Return the speed of the impact at a place and its derivatives; `near` is the step of a difference quotient by the parameter.

@@ -91,8 +91,8 @@ class Model(Varying):
             raise TypeError(
                 f"{cls.__name__} takes its parameters by name, as restitution=0.76, not {values[0]!r} alone"
             )
-        own = [entry for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
-        names = [entry.name for entry in own]
+        entries = [entry for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
+        names = [entry.name for entry in entries]
         for name in options:
             if name not in names:
                 raise TypeError(
@@ -100,7 +100,9 @@ class Model(Varying):
                 )
         # copies are constructed without options and filled later
         absent = [
-            entry.name for entry in own if entry.default is MISSING and options and entry.name not in options
+            entry.name
+            for entry in entries
+            if entry.default is MISSING and options and entry.name not in options
         ]
         if absent:
             meanings = [f"{name} ({cls.parameter(name).meaning})" for name in absent]
@@ -191,8 +193,10 @@ class Model(Varying):
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """Return the machine's fields by name, ready for JSON; `params` only matter to declared machines."""
-        own = self._own()
-        return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
+        values = self._own()
+        return {"name": self.name} | {
+            key: values[key] for key in values if key != "contact_time" or values[key]
+        }
 
     def changed(self, **values: object) -> Self:
         """Return the same machine with other values of its fields.

@@ -161,7 +161,7 @@ class Cavity(Model):
         places, names = self._amount_of, self.amount_names
         if len(names) == len(places):
             return super().law
-        powers = [[float(own == name) for own in places] for name in names]
+        powers = [[float(place == name) for place in places] for name in names]
         return np.array([[1.0] * len(places), *powers])
 
     # ------------------------------------------------------------------ starts

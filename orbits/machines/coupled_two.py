@@ -58,8 +58,8 @@ def _energy(state: States, phase: Plain, p: Named) -> Plain:
     """Return the kinetic energies and that of the spring."""
     stiffness = p.oscillator_mass * (TURN * p.natural_frequency) ** 2
     stretch = state.q - p.base_amplitude * sin(phase)
-    own = p.oscillator_mass * state.q_rate**2 + stiffness * stretch**2
-    return 0.5 * (own + p.absorber_mass_1 * state.x1_rate**2 + p.absorber_mass_2 * state.x2_rate**2)
+    oscillator = p.oscillator_mass * state.q_rate**2 + stiffness * stretch**2
+    return 0.5 * (oscillator + p.absorber_mass_1 * state.x1_rate**2 + p.absorber_mass_2 * state.x2_rate**2)
 
 
 def _wall(absorber: int, side: int) -> Wall:

@@ -53,5 +53,5 @@ def usual(name: str) -> tuple[Model, dict[str, float]]:
     """Return a machine with usual values, and values of the parameters that belong to each orbit."""
     chosen = model_class(name)
     values = {entry.name: entry.example for entry in chosen.table}
-    own = {key: values.pop(key) for key in chosen.field_names() if key in values}
-    return chosen(**own), values
+    fields = {key: values.pop(key) for key in chosen.field_names() if key in values}
+    return chosen(**fields), values

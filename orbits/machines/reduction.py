@@ -92,13 +92,13 @@ def reduced(
         highest**2 if squares[0] <= FORMULAS.zero * squares[-1] else 0.0
     )  # a free structure has no static deflection
     bent = np.linalg.solve(stiffness + shift * mass, np.eye(size)[:, kept])
-    own = np.sqrt(np.maximum(squares, 0.0))
+    frequencies = np.sqrt(np.maximum(squares, 0.0))
     steady = np.linspace(0.0, highest, GRID + 1)[1:]
-    places = np.unique(np.concatenate([steady, own[(own > 0.0) & (own <= highest)]]))
+    places = np.unique(np.concatenate([steady, frequencies[(frequencies > 0.0) & (frequencies <= highest)]]))
     matrices, ends = (mass, damping, stiffness), np.asarray(kept, dtype=int)
     true = np.array([_receptance(matrices, w, ends) for w in places])
     scale = np.linalg.norm(true, axis=(1, 2))
-    for count in range(int(np.searchsorted(own, highest, side="right")), size - len(kept)):
+    for count in range(int(np.searchsorted(frequencies, highest, side="right")), size - len(kept)):
         basis = _basis(mass, modes[:, :count], bent, ends)
         small = tuple(basis.T @ matrix @ basis for matrix in matrices)
         response = np.array([_receptance(small, w, np.arange(len(kept))) for w in places])

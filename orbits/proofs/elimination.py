@@ -69,16 +69,16 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
     # block i -> border rows that depend on it: coefficients of x_i, [coefficients of e, right side]
     borders: dict[int, list[list[Any]]] = {}
     for row, corner, c in zip(system.rows, system.corner, system.c):
-        for i, own in row.items():
-            borders.setdefault(i, []).append([own, [*corner, c]])
+        for i, columns in row.items():
+            borders.setdefault(i, []).append([columns, [*corner, c]])
     # columns of a running row: x_i, x_{i+1}, x_0, e, right side; after the last block: x_0, e, right side
     running: list[list[Any]] = []
     for row in range(k):
         tail = [*system.E[0][row], system.b[0][row]]
         A, D = system.A[0][row], system.D[0][row]
         running.append([*[p + q for p, q in zip(A, D)], *tail] if length == 1 else [*D, *nothing, *A, *tail])
-    for own, tail in borders.get(0, []):
-        running.append([*own, *tail] if length == 1 else [*nothing, *nothing, *own, *tail])
+    for columns, tail in borders.get(0, []):
+        running.append([*columns, *tail] if length == 1 else [*nothing, *nothing, *columns, *tail])
     pivot_rows: list[list[list[Any]]] = []
     for i in range(1, length):
         rows = running
@@ -86,7 +86,7 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
             D = system.D[i][row]
             middle = [*nothing, *D] if i == last else [*D, *nothing]
             rows.append([*system.A[i][row], *middle, *system.E[i][row], system.b[i][row]])
-        rows += [[*own, *nothing, *nothing, *tail] for own, tail in borders.get(i, [])]
+        rows += [[*columns, *nothing, *nothing, *tail] for columns, tail in borders.get(i, [])]
         pivot_rows.append(_eliminate(rows, k))
         running = [row[2 * k :] if i == last else [*row[k : 2 * k], *nothing, *row[2 * k :]] for row in rows]
     pivots = _eliminate(running, k + m)

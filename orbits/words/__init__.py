@@ -390,8 +390,8 @@ def border_kind(word: Word, index: int) -> str:
 def approaches_of(word: Word, margins: np.ndarray) -> np.ndarray:
     """Return the margins of the impacts (their speeds) among all margins of a cycle or of half of it."""
     columns = word.alphabet.columns
-    own = margins[columns.index(Watch.STRENGTH) :: len(columns)] if len(word) else margins[:0]
-    return own[[word.letter(i).kind == HIT for i in range(own.size)]]
+    strengths = margins[columns.index(Watch.STRENGTH) :: len(columns)] if len(word) else margins[:0]
+    return strengths[[word.letter(i).kind == HIT for i in range(strengths.size)]]
 
 
 def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:

@@ -324,10 +324,10 @@ def _items(
 
 def _slips_later(items: Sequence[Any], place: int, letters: Mapping[str, Letter]) -> bool:
     """Whether the next event of the friction that sticks at `place` is a slip."""
-    own = letters[items[place][0]].contact
+    contact = letters[items[place][0]].contact
     for step in range(1, len(items)):
         other = letters[items[(place + step) % len(items)][0]]
-        if other.contact == own:
+        if other.contact == contact:
             return other.kind == SLIP
     return False
 

@@ -207,13 +207,13 @@ def _fourth(forms: Forms) -> dict[str, float]:
 
 def _degenerate_pair(forms: Forms, value: complex) -> dict[str, float]:
     """Chenciner point, or generalized Hopf point."""
-    own = _on_boundary(forms, value)
+    on_boundary = _on_boundary(forms, value)
 
     def wanted(N: Series) -> dict[str, float]:
         first, second = N[(2, 1)][0], N[(3, 2)][0]
         if forms.flow:
-            return {"l1": first.real / own.imag, "l2": second.real / own.imag}
-        first, second = first / own, second / own
+            return {"l1": first.real / on_boundary.imag, "l2": second.real / on_boundary.imag}
+        first, second = first / on_boundary, second / on_boundary
         return {"d": first.real, "d2": second.real + 0.5 * first.imag**2}
 
     return _simple(forms, _pair_on_boundary(forms, value), [(0, (2, 1)), (0, (3, 2))], 5, wanted)

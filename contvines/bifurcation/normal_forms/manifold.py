@@ -262,15 +262,15 @@ def reduced(
     steps = int(np.ceil(np.log(NORMAL_FORMS.narrowest / (WIDEST * forms.reach)) / np.log(NARROWER)))
     for radius in WIDEST * forms.reach * NARROWER ** np.arange(steps + 1):
         try:
-            own = Reduction(forms, vectors / lengths, linear, real, stay, radius).to(degree).N
+            normal_form = Reduction(forms, vectors / lengths, linear, real, stay, radius).to(degree).N
         except ValueError:
             continue
-        current = dict(wanted(own))
+        current = dict(wanted(normal_form))
         if before is not None:
             sizes = max(TINY, *map(abs, current.values()))
             change = max(abs(current[name] - before[name]) for name in current) / sizes
             if change < error:
-                error, best = change, own
+                error, best = change, normal_form
                 if error < NORMAL_FORMS.enough:
                     break
             elif error < NORMAL_FORMS.digits and change > 100.0 * error:  # rounding dominates

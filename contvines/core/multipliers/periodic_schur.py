@@ -85,8 +85,8 @@ def scaled(mantissa, exponent):
     """mantissa * 2**exponent, clamped away from 0 and infinity (an exact 0 stays 0)."""
     if mantissa == 0.0 or not math.isfinite(mantissa):
         return mantissa
-    fraction, own = math.frexp(mantissa)
-    total = own + exponent
+    fraction, power = math.frexp(mantissa)
+    total = power + exponent
     if total > 1023:
         return math.copysign(LARGEST, mantissa)
     if total < -1020:
@@ -308,10 +308,10 @@ def _iterate(T, turns):
             for k in range(lo, hi):
                 _carry(T, k, turns[2 * k].real, turns[2 * k + 1], lo, hi, k + 1)
         else:
-            target, own = _shift(T, hi)
+            target, exponent = _shift(T, hi)
             if tries % 10 == 9:
                 target *= 1.0 + 0.5j
-            gap = min(own - power, 900)
+            gap = min(exponent - power, 900)
             first = H[lo, lo] - (target / ratio * math.ldexp(1.0, gap) if gap >= -900 else 0.0)
             second = H[lo + 1, lo]
             c, s = _rotation(first, second)

@@ -160,11 +160,11 @@ def _frame(itself: _Itself, parameter: str, values: bytes, units: tuple[float, f
     model, params = itself.model, np.frombuffer(values)
     path, law = model.path(parameter, params), model.law
     units = model.natural_units(params) if units is None else units
-    own, own_path = params, path
+    numbers, own_path = params, path
     if units != PLAIN:
         factors = model.factors(units)
-        own, own_path = params / factors, np.array([path[0] / factors, path[1]])
+        numbers, own_path = params / factors, np.array([path[0] / factors, path[1]])
         law = law.copy() if len(law) else np.vstack([np.ones(params.size), np.eye(params.size)])
         law[0] /= factors
     amounts = np.array(model.amounts(params), dtype=float)
-    return _Frame(path, units, own, own_path, model.place_of(parameter), amounts, law)
+    return _Frame(path, units, numbers, own_path, model.place_of(parameter), amounts, law)

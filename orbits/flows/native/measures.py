@@ -84,10 +84,10 @@ def dimensionless(
     if means:
         whole = dimensionless(model, word, periods, nodes, params, [MEANS[name] for name in means])
         result |= {name: whole[MEANS[name]] / periods for name in means}
-    own = [name for name in wanted if name not in MEANS and (name not in COMMON or name == "C2")]
-    if own and model.moving_cavity:
-        result |= own_measures(own, model, word, periods, nodes, params)
-    elif own:
+    basic = [name for name in wanted if name not in MEANS and (name not in COMMON or name == "C2")]
+    if basic and model.moving_cavity:
+        result |= own_measures(basic, model, word, periods, nodes, params)
+    elif basic:
         result["C2"] = np.asarray(model.column(params, model.driven_by)) ** 2
     lasts = 2.0 * np.pi * periods / np.asarray(model.phase_speed(params))
     if not {*LOADS, "impact_loss"}.isdisjoint(wanted):

@@ -60,9 +60,11 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
             if not span > 0.0:
                 continue
             for clock, g, state in watch(nodes[i, 1:], begin[i], end[i], work.numbers[i]):
-                own = EVENTS.at_end * span
+                end_part = EVENTS.at_end * span
                 j = guards[g].contact
-                if (j in at_begin and clock - begin[i] < own) or (j in at_stop and end[i] - clock < own):
+                if (j in at_begin and clock - begin[i] < end_part) or (
+                    j in at_stop and end[i] - clock < end_part
+                ):
                     continue
                 found.append((i, g, state, clock))
         if found:

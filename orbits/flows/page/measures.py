@@ -27,9 +27,9 @@ def names(model: Machine) -> tuple[str, ...]:
     - Forces and energies at the contacts (`orbits.machines.page.patterns`); the energies are per period of the orbit.
     """
     kinds = OF_A_STATE if model.forced else OF_A_STATE[:-1]
-    own = [f"{kind}_{state}" for state in model.states for kind in kinds]
+    of_states = [f"{kind}_{state}" for state in model.states for kind in kinds]
     return (
-        *own,
+        *of_states,
         *(["phase"] if model.forced else []),
         "period",
         "rate",

@@ -76,13 +76,13 @@ class Units:
         No parameter is a length of more than `LONGEST` typical lengths. A typical speed is a typical length times the rate (radians per second).
         """
         unit = {name: size(text, "m") for name, text in self.said.items()}
-        own = [unit[name] for name in states if unit.get(name)]
-        if not own:
+        units = [unit[name] for name in states if unit.get(name)]
+        if not units:
             return np.ones(len(states))
         longest = max(
             (abs(value) * (unit.get(name) or 0.0) for name, value in parameters.items()), default=0.0
         )
-        length = max(min(one for one in own if one), longest / LONGEST)
+        length = max(min(one for one in units if one), longest / LONGEST)
         found = np.ones(len(states))
         for i, name in enumerate(states):
             speed = size(self.said[name], "m/s") if name in self.said else None

@@ -132,9 +132,11 @@ def _machine_from(
 ) -> Physical:
     """Return the machine with these numbers, and a record of the given quantities."""
     cls = _class_of(base)
-    own = cls.field_names()
-    machine = cls(contact_time=contact_time, **{name: numbers[name] for name in numbers if name in own})
-    loose = {name: value for name, value in numbers.items() if name not in own}
+    field_names = cls.field_names()
+    machine = cls(
+        contact_time=contact_time, **{name: numbers[name] for name in numbers if name in field_names}
+    )
+    loose = {name: value for name, value in numbers.items() if name not in field_names}
     for name, value in {
         "basis": basis, "counts": counts, "said": said, "loose": loose, "unusual": unusual, "base": base,
     }.items():  # fmt: skip
