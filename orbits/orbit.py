@@ -156,9 +156,9 @@ class Orbit(Cycle):
         KeyError
             If a name is unknown.
         """
-        asked = wanted or self.flow.measure_names(self.model)
+        names = wanted or self.flow.measure_names(self.model)
         values = self.flow.measures(
-            self.model, self.word, self.periods, self.nodes[None], self.params[None], list(asked)
+            self.model, self.word, self.periods, self.nodes[None], self.params[None], list(names)
         )
         return {name: float(value[0]) for name, value in values.items()}
 
@@ -359,8 +359,8 @@ def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER
         for shift in np.argsort(rough, kind="stable").tolist() if len(rough) > 1 else (0,):
             if rough[shift] >= best:
                 break
-            moved = np.roll(image, -instants * shift, axis=0) if shift else image
-            best = min(best, float(_largest(moved - second, free)))
+            shifted = np.roll(image, -instants * shift, axis=0) if shift else image
+            best = min(best, float(_largest(shifted - second, free)))
     return best / unit
 
 

@@ -141,15 +141,15 @@ def _rounding(segment: Segment, root: Root, index: int, before: Solved | None) -
     if neighbour is not None and reach < room:
         error = _scatter(segment, root, index, towards * reach, neighbour)
     while reach > 0.0 and (neighbour := neighbour or segment.at(place + towards * reach)) is not None:
-        rises, moved = np.abs(_finite(neighbour.row[first:][flat]) - at_border), abs(neighbour.p - point.p)
+        rises, distance = np.abs(_finite(neighbour.row[first:][flat]) - at_border), abs(neighbour.p - point.p)
         significant = rises > SIGNIFICANT * MARGIN_ROUNDING
         if significant.any():
-            error = max(error, moved * MARGIN_ROUNDING / float(rises[significant].min()))
+            error = max(error, distance * MARGIN_ROUNDING / float(rises[significant].min()))
             flat, at_border = flat[~significant], at_border[~significant]
         if not len(flat):
             break
         if reach == room:
-            error = max(error, moved)
+            error = max(error, distance)
             break
         reach, neighbour = min(30.0 * reach, room), None
     return error

@@ -54,9 +54,9 @@ def turns_back(point: Point) -> bool:
         return alone(engine, point.solved)
     if segment.turns:
         return True
-    moved = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
+    reach = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
     blur = rounding_of_parameter(engine, point.solved) if engine.adaptive else 0.0
-    return moved > max(engine.settled(point.value), blur)
+    return reach > max(engine.settled(point.value), blur)
 
 
 def fold_form(point: PointOnBranch) -> Classified:

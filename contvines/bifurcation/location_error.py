@@ -64,8 +64,8 @@ def rounding_of_parameter(engine: Engine, point: Solved) -> float:
     problem = engine.problem
     sizes = ENTRY * (problem.terms(point.u) if isinstance(problem, Adaptive) else engine.row_sizes)
     signs = np.sign(np.random.default_rng(5).standard_normal((SAMPLES, engine.n)))
-    moved = [float(engine.apply_inverse(border, engine.join(sizes * row, 0.0))[-1]) for row in signs]
-    found = 3.0 * math.sqrt(sum(size * size for size in moved) / SAMPLES)
+    shifts = [float(engine.apply_inverse(border, engine.join(sizes * row, 0.0))[-1]) for row in signs]
+    found = 3.0 * math.sqrt(sum(size * size for size in shifts) / SAMPLES)
     return found if math.isfinite(found) else 0.0
 
 
@@ -106,7 +106,7 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
     directions = (tangent, right / (engine.norm(right) or math.nan))
     with np.errstate(all="ignore"):
         engine.residual(u, p)
-        rest = np.array([_image(engine, left, direction) for direction in directions])
+        values = np.array([_image(engine, left, direction) for direction in directions])
         bent = np.array(
             [
                 [_slope(engine, u, p, direction, left, other) for other in directions]
@@ -115,7 +115,7 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
         )
         if not (np.isfinite(bent).all() and np.linalg.cond(bent) < LOCATING.bent):
             return 0.0
-        step = np.linalg.solve(bent.T, -rest)
+        step = np.linalg.solve(bent.T, -values)
     found = abs(float(step @ [direction[-1] for direction in directions]))
     return found if math.isfinite(found) else 0.0
 

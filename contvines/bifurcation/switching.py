@@ -61,8 +61,8 @@ class Departure:
 
     def upright(self, unit: float, visible: float) -> bool:
         """Whether the parameter does not change along the branch: by no more than rounding of `unit`, over more than the `visible` length."""
-        moved = max(abs(self.ahead.p - self.origin.p), abs(self.slope) * self.amplitude)
-        return moved <= ROUNDED * unit and self.amplitude > visible
+        change = max(abs(self.ahead.p - self.origin.p), abs(self.slope) * self.amplitude)
+        return change <= ROUNDED * unit and self.amplitude > visible
 
 
 def null_vectors(

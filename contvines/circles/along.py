@@ -334,9 +334,9 @@ class Family:
             for curve in (last, before)
         )
         sizes = np.abs(current - (0.0, 0.0, self.birth.p))
-        moved = (current - previous) / sizes
-        share = step / float(np.linalg.norm(moved))
-        a, b, c = (moved / np.linalg.norm(moved) / sizes).tolist()
+        change = (current - previous) / sizes
+        share = step / float(np.linalg.norm(change))
+        a, b, c = (change / np.linalg.norm(change) / sizes).tolist()
         target = float(np.dot((a, b, c), current)) + step
         guess = last.beyond(before.finer(len(last.points)), share, share)
         return guess, Condition((a, b, c), target)

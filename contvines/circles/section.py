@@ -84,7 +84,7 @@ def slopes(section: Section, x: np.ndarray, size: float) -> np.ndarray:
     """
     result = np.empty((len(x), len(x)))
     for j in range(len(x)):
-        moved = np.zeros(len(x))
-        moved[j] = size
-        result[:, j] = (section.step(x + moved) - section.step(x - moved)) / (2.0 * size)
+        step = np.zeros(len(x))
+        step[j] = size
+        result[:, j] = (section.step(x + step) - section.step(x - step)) / (2.0 * size)
     return result

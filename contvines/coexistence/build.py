@@ -285,16 +285,18 @@ class _Search:
 
     def everywhere(self, scan: int) -> None:
         """Simulate at scattered values until `scan` values in a row have added no branch."""
-        quiet = k = 0
+        fruitless = k = 0
         self.effort.expect(ENDS, len(self.handover.left()))
-        while (left := min(scan - quiet, LONGEST_SCAN * scan - k)) > 0 and not self._over(SCATTERED, left):
+        while (left := min(scan - fruitless, LONGEST_SCAN * scan - k)) > 0 and not self._over(
+            SCATTERED, left
+        ):
             self.effort.expect(SCATTERED, left)
             with self.effort.piece(SCATTERED):
                 p = scattered(self.run.graph.within, self.seed, k)
                 added = self.few(p)
-            quiet = 0 if added else quiet + 1
+            fruitless = 0 if added else fruitless + 1
             k += 1
-        self.run.graph.settings |= {"scanned": k, "quiet": quiet}
+        self.run.graph.settings |= {"scanned": k, "quiet": fruitless}
 
     def tell_left(self) -> None:
         """Store the amount of work, the unknown stretches and the work left out in the graph's settings and message."""

@@ -229,9 +229,9 @@ def _linear(
     """
     jacobian, step_size = np.empty((2, 2)), DIFFERENCE * first
     for j in range(2):
-        moved = np.zeros(2)
-        moved[j] = step_size
-        jacobian[:, j] = (step(place + moved) - step(place - moved)) / (2.0 * step_size)
+        shift = np.zeros(2)
+        shift[j] = step_size
+        jacobian[:, j] = (step(place + shift) - step(place - shift)) / (2.0 * step_size)
     if not np.all(np.isfinite(jacobian)):
         return None
     values, vectors = np.linalg.eig(jacobian)

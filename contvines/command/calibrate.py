@@ -101,9 +101,9 @@ def calibrate(
     assert path is not None
     try:
         if impacts is not None:
-            found, look = _from_impacts(read, model, path, release, arguments)
+            found, options = _from_impacts(read, model, path, release, arguments)
         else:
-            found, look = _from_sweep(read, model, path, measure, arguments)
+            found, options = _from_sweep(read, model, path, measure, arguments)
     except ValueError as error:
         text = str(error).rstrip(".")
         raise ValueError(f"{text}." if text.startswith(str(path)) else f"{path}: {text}.") from None
@@ -112,7 +112,7 @@ def calibrate(
     if plot is not None:
         from ..plots.measured import plot_calibration
 
-        draw(plot, lambda: plot_calibration(residuals=found.residuals, figsize=size, **look), json_)
+        draw(plot, lambda: plot_calibration(residuals=found.residuals, figsize=size, **options), json_)
 
 
 def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
@@ -224,8 +224,8 @@ def _from_impacts(
             )
         start, model = {"q1": displacement, "q2": displacement}, model.changed(forcing=0.0)
     ylabel = with_unit("measured less computed", second)
-    look = {"places": times, "heights": None, "xlabel": with_unit("time", second), "ylabel": ylabel}
-    return from_impacts(model, times, start=start, **arguments), look
+    options = {"places": times, "heights": None, "xlabel": with_unit("time", second), "ylabel": ylabel}
+    return from_impacts(model, times, start=start, **arguments), options
 
 
 def _from_sweep(
@@ -250,5 +250,5 @@ def _from_sweep(
         for row, value in enumerate(values, 1):
             number_of(model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}")
     ylabel = axis_label(name, unit=unit or None, notation=model.notation)
-    look = {"places": values, "heights": heights, "xlabel": with_unit(over, own), "ylabel": ylabel}
-    return from_sweep(model, over, values, heights, measure=name, **arguments), look
+    options = {"places": values, "heights": heights, "xlabel": with_unit(over, own), "ylabel": ylabel}
+    return from_sweep(model, over, values, heights, measure=name, **arguments), options

@@ -125,7 +125,7 @@ def plot(
                 f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
             )
     graph = load(file, trust=trust)
-    look: dict[str, Any] = {"figsize": size, "style": style}
+    options: dict[str, Any] = {"figsize": size, "style": style}
     if isinstance(graph, Chart):
         from ..plots.chart import plot_chart
 
@@ -134,7 +134,7 @@ def plot(
                 raise ValueError(
                     f"{line}: {file} holds a chart, whose picture has no use for it; leave {name} out."
                 )
-        figure = plot_chart(graph, legend=legend, **look)
+        figure = plot_chart(graph, legend=legend, **options)
     else:
         say_state(graph, file)
         if not graph.branches:
@@ -145,18 +145,18 @@ def plot(
                 f"--branch {label}: there is no such branch in {file}; it has {', '.join(graph.branches)}."
             )
         if kind is Picture.diagram:
-            look |= {"words": words, "color": (color or Colors.branch).value, "legend": legend}
-            look |= {"xlim": xlim, "ylim": ylim, "inset": inset is not False}
-            look["marks"] = True if marks is None else [] if marks == "none" else marks.split(",")
-            figure = compared(graph, compare, x, y, **look)
+            options |= {"words": words, "color": (color or Colors.branch).value, "legend": legend}
+            options |= {"xlim": xlim, "ylim": ylim, "inset": inset is not False}
+            options["marks"] = True if marks is None else [] if marks == "none" else marks.split(",")
+            figure = compared(graph, compare, x, y, **options)
         elif kind is Picture.network:
             from ..plots.network import plot_network
 
-            figure = plot_network(graph, **look)
+            figure = plot_network(graph, **options)
         else:
             from ..plots.multipliers import plot_multipliers
 
-            figure = plot_multipliers(graph.branches[label], **look)
+            figure = plot_multipliers(graph.branches[label], **options)
     save_figure(figure, target)
     typer.echo(str(target))
 

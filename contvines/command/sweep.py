@@ -205,7 +205,7 @@ def picture(
     from ..plots.sweep import plot_sweep
 
     model = study.model
-    look: dict[str, Any] = {
+    options: dict[str, Any] = {
         "units": model.units,
         "notation": model.notation,
         "figsize": size,
@@ -217,7 +217,9 @@ def picture(
         points = [(row.value, dot) for row in steady for dot in row.dots]
         # only displacements have a band
         bands: list[Any] = [(row.value, *row.band) for row in rows if row.band and measure.startswith("max_")]
-        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, bands=bands, **look)
+        return plot_sweep(
+            points, study.parameter, graph, measure, wandering=wandering, bands=bands, **options
+        )
     first: list[tuple[float, float]] = []
     others: list[tuple[float, float]] = []
     lines = _lines(graph) if graph is not None else []
@@ -225,7 +227,7 @@ def picture(
         place = _drawn_impact(row, lines) if graph is not None else None
         for i, dot in enumerate(row.dots):
             (first if graph is None or i == place else others).append((row.value, dot))
-    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, **look)
+    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, **options)
 
 
 def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:

@@ -223,10 +223,10 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
 
 
 def _peaks(motion: StartUp | Response, words: str) -> Rows:
-    moved = np.abs(motion.oscillator)
+    displacement = np.abs(motion.oscillator)
     return [
-        ("peak", moved.max(), "length", words),
-        ("peak_at", motion.times[moved.argmax()], "time", "when"),
+        ("peak", displacement.max(), "length", words),
+        ("peak_at", motion.times[displacement.argmax()], "time", "when"),
         ("bare_peak", np.abs(motion.bare).max(), "length", "the same without absorber"),
     ]
 
@@ -294,11 +294,11 @@ def of_page(
     if count:
         rows.append(("fastest_impact", float(motion.impact_speeds.max()), speed, "largest impact speed"))
     if motion.energy is not None:
-        held = study.parameters.get(CONTACT)
-        if held is not None:
-            held *= machine.equations.factors.get(CONTACT, 1.0)
+        contact_time = study.parameters.get(CONTACT)
+        if contact_time is not None:
+            contact_time *= machine.equations.factors.get(CONTACT, 1.0)
         loads = {**units, "contact_time": second} if units else {}
-        rows += loads_rows(float(motion.impulses.max(initial=0.0)), count, held, loads)
+        rows += loads_rows(float(motion.impulses.max(initial=0.0)), count, contact_time, loads)
         joule = units.get("impact_loss", "")
         rows.append(("impact_energy", float(motion.impacts[-1]), joule, "taken by impacts"))
         rows.append(("friction_energy", float(motion.friction[-1]), joule, "by friction"))

@@ -130,13 +130,13 @@ class CycleRelatives(CycleMesh):
         points, slopes = (mesh.at_gauss_points(part, x / self.node_scale) for part in (r.values, r.slopes))
         share, turns = (widths[:, None] * r.weights).reshape(-1), np.tile(r.weights, len(widths))
         mean = share @ points
-        rest = points - mean
-        size = np.sqrt(share @ rest**2)
+        gaps = points - mean
+        size = np.sqrt(share @ gaps**2)
         moves = size > self.flow.settings.same * size.max()  # a constant coordinate has no shape
-        unit = np.where(moves, rest / np.where(moves, size, 1.0), 0.0)
+        unit = np.where(moves, gaps / np.where(moves, size, 1.0), 0.0)
         second, area, third = (
             np.einsum("i,ia,ib->ab", weights, one, other)
-            for weights, one, other in ((share, rest, unit), (turns, unit, slopes), (share, unit**2, rest))
+            for weights, one, other in ((share, gaps, unit), (turns, unit, slopes), (share, unit**2, gaps))
         )
         upper = np.triu_indices(d)
         clock = period / self.clock if self.free_period else 1.0
@@ -239,8 +239,8 @@ class CycleRelatives(CycleMesh):
         """Error of the smallest value of an event, from the error of the curve between the mesh points."""
         (x, time), sizes = self.touching(u, p, k), self.sizes(self.curve(u)[0])
         touch = self.flow.settings.touch
-        moved = x + touch * np.concatenate([np.diag(sizes), -np.diag(sizes)])
-        values = self.flow.events(moved, self.values.at(p), np.full(len(moved), time))[:, k].reshape(2, -1)
+        nearby = x + touch * np.concatenate([np.diag(sizes), -np.diag(sizes)])
+        values = self.flow.events(nearby, self.values.at(p), np.full(len(nearby), time))[:, k].reshape(2, -1)
         return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * touch))
 
     def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:

@@ -43,8 +43,8 @@ def condense(blocks: np.ndarray, columns: np.ndarray, d: int) -> Condensed:
         Columns of the shared unknowns, then right-hand sides with the opposite sign.
     d : int
     """
-    whole = np.concatenate([blocks[:, :, :d], blocks[:, :, -d:], columns], axis=2)
-    maps, rest, sign = _eliminated(blocks[:, :, d:-d], whole)
+    coupled = np.concatenate([blocks[:, :, :d], blocks[:, :, -d:], columns], axis=2)
+    maps, rest, sign = _eliminated(blocks[:, :, d:-d], coupled)
     return Condensed(rest[:, :, :d], rest[:, :, d : 2 * d], rest[:, :, 2 * d :], maps, sign)
 
 
@@ -99,14 +99,14 @@ def solve_cyclic(
         pairs = n // 2
         one, two = slice(0, 2 * pairs, 2), slice(1, 2 * pairs, 2)
         zero = np.zeros((pairs, d, d))
-        whole = np.concatenate(
+        coupled = np.concatenate(
             [
                 np.concatenate([left[one], zero, columns[one]], axis=2),
                 np.concatenate([zero, right[two], columns[two]], axis=2),
             ],
             axis=1,
         )
-        maps, rest, last_sign = _eliminated(np.concatenate([right[one], left[two]], axis=1), whole)
+        maps, rest, last_sign = _eliminated(np.concatenate([right[one], left[two]], axis=1), coupled)
         sign *= last_sign
         passed = np.matmul(rows[two], maps)
         foot -= passed[:, :, 2 * d :].sum(axis=0)

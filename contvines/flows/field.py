@@ -197,9 +197,9 @@ class Field:
     def _along(self, masks: np.ndarray, x: np.ndarray, p: float, t: np.ndarray | None) -> np.ndarray:
         """Sums of columns of df/dx at the points, shape (k, n, d), for k masks of columns: by the complex step, or by differences in units of the lengths."""
         if self.complex_step:
-            moved = (x + 1j * COMPLEX_STEP * masks[:, None]).reshape(-1, self.node)
+            shifted = (x + 1j * COMPLEX_STEP * masks[:, None]).reshape(-1, self.node)
             times = None if t is None else np.tile(t, len(masks))
-            return np.imag(self(moved, p, times)).reshape(len(masks), *x.shape) / COMPLEX_STEP
+            return np.imag(self(shifted, p, times)).reshape(len(masks), *x.shape) / COMPLEX_STEP
         steps = STEP * self.lengths * masks
         return np.array([_difference(lambda s, h=h: self(x + s * h, p, t)) / STEP for h in steps])
 

@@ -166,13 +166,13 @@ def quadratic(problem: CycleMesh, u: np.ndarray, p: float, along: np.ndarray) ->
     parts = system.parts(v, 1.0)
     one, two = system.bent(parts[0])
     side = system.second(one, parts, parts)
-    first, moved = slice(0, problem.node), along[: problem.node]
+    first, direction = slice(0, problem.node), along[: problem.node]
     if system.free:
         speed = problem.field(u[None, first], p)[0]
-        moved = moved - (speed @ moved) / (speed @ speed) * speed
+        direction = direction - (speed @ direction) / (speed @ speed) * speed
     third = system.rows(system.steps[:, None] * _apply(two, parts[0]))
     size = np.linalg.norm(w) * (np.linalg.norm(side) + NEAR * np.linalg.norm(third))
-    scale = math.copysign(0.5, -float(v[first] @ moved)) / np.real(weight)
+    scale = math.copysign(0.5, -float(v[first] @ direction)) / np.real(weight)
     return float(scale * (w @ side)), float(abs(scale) * size)
 
 

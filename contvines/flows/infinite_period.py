@@ -171,9 +171,9 @@ class Ending:
     def _delays(self) -> np.ndarray:
         """Changes along the branch of the times at which the cycle crosses the planes at the nodes; the last entry is T'."""
         problem = self.problem
-        f, moved = self.rates / problem.node_scale, self.moved / problem.node_scale
+        f, change = self.rates / problem.node_scale, self.moved / problem.node_scale
         lengths = self.growth * self.widths + self.period * self.tangent[:-1][problem.held]
-        delays = mesh.node_places(problem.rule, lengths) - (f * moved).sum(axis=1) / np.maximum(
+        delays = mesh.node_places(problem.rule, lengths) - (f * change).sum(axis=1) / np.maximum(
             (f * f).sum(axis=1), TINY
         )
         return np.append(delays, self.growth)

@@ -254,8 +254,8 @@ def equidistributed(
     mean = float((current * widths).sum())
     if not mean > 0.0 or not np.isfinite(mean):
         return None
-    wanted = current + EVEN * mean
-    parts = wanted.reshape(copies, -1).max(axis=0)
+    target = current + EVEN * mean
+    parts = target.reshape(copies, -1).max(axis=0)
     part = widths.reshape(copies, -1)[0]
     shares = parts * part
     if shares.max() <= SLACK * shares.mean():

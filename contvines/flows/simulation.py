@@ -162,9 +162,9 @@ def _forced(
             extents = (high - low) / field.lengths
             near = s.recurs * np.maximum(extents, s.least * extents.max()) + s.still
             if (np.abs(points[-1] - points[0]) <= near * field.lengths).all():
-                whole = _run(field, p, points[0], 0.0, k * period, dense=True)
+                run_again = _run(field, p, points[0], 0.0, k * period, dense=True)
                 times = np.linspace(0.0, k * period, SAMPLES * k + 1)
-                return times, whole.sol(times).T, k
+                return times, run_again.sol(times).T, k
         x, count = points[-1], 2 * count
         if count > 20000:
             break
@@ -200,9 +200,9 @@ def _free(
             found = _returned(exact, plane, s.recurs * unit, longest)
             if found is not None:
                 start, period = exact.sol(found[0]), found[1] - found[0]
-                whole = _run(field, p, start, 0.0, period, dense=True)
+                run_again = _run(field, p, start, 0.0, period, dense=True)
                 times = np.linspace(0.0, period, SAMPLES + 1)
-                return times, whole.sol(times).T, 1
+                return times, run_again.sol(times).T, 1
         x, span = run.y[:, -1], 2.0 * span
     raise Irregular(
         "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
@@ -355,9 +355,9 @@ class March:
                 if good[rows == i].any():
                     path.append(Place(float(self.t[i]), self.x[i].copy(), self.slope[i].copy()))
             self._stop(took)
-            whole = h == self.h[rows]
+            full_step = h == self.h[rows]
             with np.errstate(all="ignore"):
-                scaled = np.where(whole | ~good, h * factor, self.h[rows])
+                scaled = np.where(full_step | ~good, h * factor, self.h[rows])
             self.h[rows] = np.where(np.isfinite(error), scaled, SHRINK * h)
             lost = (np.abs(self.x[rows]) > far * self.size).any(axis=1) | (
                 h < ROUNDED * np.maximum(1.0, np.abs(t))

@@ -119,16 +119,16 @@ def solve_bordered(
     n = len(columns)
     sides = sides.copy()
     sides[n:] *= SMALL
-    whole = sp.block_array([[matrix, columns], [SMALL * rows, SMALL * corner]], format="csc")
+    bordered = sp.block_array([[matrix, columns], [SMALL * rows, SMALL * corner]], format="csc")
     top = float(np.abs(matrix.data).max(initial=1.0))
     for shift in (0.0, ROUNDED * top):
-        shifted = whole + shift * sp.identity(len(sides), format="csc") if shift else whole
+        shifted = bordered + shift * sp.identity(len(sides), format="csc") if shift else bordered
         try:
             factors = SuperLUFactors(sp.csc_array(shifted), "COLAMD")
         except RuntimeError:
             continue
         x = factors.solve(sides)
-        more = factors.solve(sides - whole @ x)
+        more = factors.solve(sides - bordered @ x)
         return (x + more if np.isfinite(more).all() else x), (0.0 if shift else factors.sign)
     return np.full(sides.shape, np.nan), 0.0
 

@@ -152,8 +152,8 @@ class CycleWork:
         foot[-1, k - 1] += border[tail] @ widths[:, 0]
         foot[-1, k:] -= border[tail] @ widths[:, 1:]
         nodes, shared, sign = self._solved(columns, rows, foot)
-        moved = widths[:, 1:] + widths[:, :1] * shared[-1]
-        return np.concatenate([nodes.reshape(states, 2), shared[:-1], moved, shared[-1:]]), sign
+        shifts = widths[:, 1:] + widths[:, :1] * shared[-1]
+        return np.concatenate([nodes.reshape(states, 2), shared[:-1], shifts, shared[-1:]]), sign
 
     def _solved(
         self, columns: np.ndarray, rows: np.ndarray, foot: np.ndarray
@@ -169,9 +169,9 @@ class CycleWork:
         from scipy.sparse import bmat
         from scipy.sparse.linalg import splu
 
-        whole = bmat([[self.full, column[:, None]], [border[None, :-1], border[None, -1:]]], format="csc")
+        bordered = bmat([[self.full, column[:, None]], [border[None, :-1], border[None, -1:]]], format="csc")
         try:
-            return splu(whole).solve(sides), 0.0  # the sign is not needed for transposed equations
+            return splu(bordered).solve(sides), 0.0  # the sign is not needed for transposed equations
         except RuntimeError as error:
             raise np.linalg.LinAlgError(str(error)) from error
 

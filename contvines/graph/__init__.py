@@ -220,7 +220,7 @@ class Graph(Resumable):
     @property
     def own_kinds(self) -> dict[str, Kind]:
         """User-defined kinds by name; for a graph from a file only with label, text and marker."""
-        return {look["name"]: Kind(**look) for look in self.settings.get("kinds", [])}
+        return {fields["name"]: Kind(**fields) for fields in self.settings.get("kinds", [])}
 
     def kind(self, name: str) -> Kind:
         """Return the kind of this name, built-in or user-defined: its label, text and marker."""

@@ -170,13 +170,13 @@ def simulated(graph: Graph) -> str:
     if empty := graph.settings.get("unknown"):
         stretches = ", ".join(f"{number(a)}..{number(b)}" for a, b in empty)
         line += f"; the attractors on {stretches} are not known: give values there, or raise scan or budget"
-    scanned, quiet = graph.settings.get("scanned"), graph.settings.get("quiet", 0)
+    scanned, fruitless = graph.settings.get("scanned"), graph.settings.get("quiet", 0)
     if not scanned:
         return line
-    if quiet >= graph.settings["scan"]:
-        line += f"; the last {quiet} of {scanned} scattered values showed nothing new"
+    if fruitless >= graph.settings["scan"]:
+        line += f"; the last {fruitless} of {scanned} scattered values showed nothing new"
     else:
-        line += f"; {scanned} scattered values showed new motions again and again, except the last {quiet}: raise scan to search further"
+        line += f"; {scanned} scattered values showed new motions again and again, except the last {fruitless}: raise scan to search further"
     ends, left = graph.settings.get("followed", 0), graph.settings.get("unfollowed", 0)
     if ends:
         line += (

@@ -232,8 +232,8 @@ class Asymptotics:
 
     def largest(self, share: float) -> float:
         """Return the e at which the size of the orbit, or the change of a parameter, is a given share of its unit."""
-        moved = 10.0 / 7.0 * np.abs(self.b / self.a * self.by_second)
-        size = np.maximum(6.0 / abs(self.a) * np.abs(self.states[0]), moved)
+        shift = 10.0 / 7.0 * np.abs(self.b / self.a * self.by_second)
+        size = np.maximum(6.0 / abs(self.a) * np.abs(self.states[0]), shift)
         return float(np.sqrt(share / size.max()))
 
     def orbit(self, e: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:

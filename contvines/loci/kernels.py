@@ -155,8 +155,8 @@ def slopes_along(data, work, direction):
     if not length > ROUNDED:
         return slopes
     h = SCALING.step / length
-    moved = point + h * direction
-    tests(data, work, moved[:n], data.unit * moved[n], moved[-1], slopes)
+    shifted = point + h * direction
+    tests(data, work, shifted[:n], data.unit * shifted[n], shifted[-1], slopes)
     return (slopes - work.values[: len(slopes)]) / h
 
 

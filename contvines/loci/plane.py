@@ -68,8 +68,8 @@ class Plane(Linearisation):
         places = np.abs(upper) ** 2 if self.flow else upper.real
         unit = 1.0 + abs(reference) if self.flow else 1.0
         nearest = int(np.argmin(np.abs(tests) + 0.1 * np.abs(places - reference) / unit))
-        rest = [i for i in range(len(upper)) if i != nearest]
-        return float(tests[min(rest, key=lambda i: abs(places[i] - second))])
+        others = [i for i in range(len(upper)) if i != nearest]
+        return float(tests[min(others, key=lambda i: abs(places[i] - second))])
 
     # ------------------------------------------------------------------ along the branches
     def branch_direction(self, null: Null) -> np.ndarray:

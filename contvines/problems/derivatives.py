@@ -257,9 +257,9 @@ class Differentiated:
         """Return df/du_j by differences."""
 
         def shifted(t: float) -> np.ndarray:
-            moved = u.copy()
-            moved[j] += t
-            return self._value(moved, p)
+            shifted = u.copy()
+            shifted[j] += t
+            return self._value(shifted, p)
 
         return self._evaluable(along(self.quietly(shifted), float(self.lengths[j]), self.noise))
 

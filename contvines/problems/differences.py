@@ -256,8 +256,8 @@ def roughness(f: Line) -> np.ndarray:
     before: np.ndarray | None = None
     for stretch in STRETCHES:
         table = np.array([f(stretch * t) for t in places])
-        rest = table - basis @ (basis.T @ table)
-        left = np.sqrt((rest**2).sum(axis=0) / (SAMPLES - DEGREE - 1))
+        residual = table - basis @ (basis.T @ table)
+        left = np.sqrt((residual**2).sum(axis=0) / (SAMPLES - DEGREE - 1))
         if before is None or noise is None:
             noise = np.zeros(left.shape)
         else:
@@ -292,7 +292,7 @@ def _continuous(f: Line, t: float, r: int, noticeable: float) -> bool:
             return True  # the end of the domain of f is a length, too
         k = int(np.argmax(np.abs(np.diff(values))))
         (low, high), (before, after) = places[k : k + 2], values[k : k + 2]
-        whole = abs(after - before)
+        jump = abs(after - before)
         for _ in range(CLOSER):
             middle = 0.5 * (low + high)
             value = float(f(middle)[r])
@@ -300,7 +300,7 @@ def _continuous(f: Line, t: float, r: int, noticeable: float) -> bool:
                 high, after = middle, value
             else:
                 low, before = middle, value
-        if abs(after - before) > 0.05 * whole + noticeable:
+        if abs(after - before) > 0.05 * jump + noticeable:
             return False
     return True
 

@@ -130,8 +130,8 @@ class MapProblem(CallableProblem):
         start = np.array(u0, dtype=float)
         flat = flat_start(start.reshape(-1))
         d = len(flat) if dimension is None else int(dimension)
-        whole = start.ndim == 2 or (cycle > 1 and len(flat) % cycle == 0 and len(flat) >= cycle)
-        if dimension is None and whole:
+        all_points = start.ndim == 2 or (cycle > 1 and len(flat) % cycle == 0 and len(flat) >= cycle)
+        if dimension is None and all_points:
             d = len(flat) // (start.shape[0] if start.ndim == 2 else cycle)
         self.values = ParameterSet(p0, parameter)
         self.cycle, self.name, self.node = int(cycle), name, d

@@ -224,9 +224,9 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
         value = f(u)
 
         def change(j: int, factor: float) -> np.ndarray:
-            moved = u.copy()
-            moved[j] *= factor
-            return np.abs(f(moved) - value)
+            shifted = u.copy()
+            shifted[j] *= factor
+            return np.abs(f(shifted) - value)
 
         # zero may be another solution, so that f does not change: twice the unknown is tried, too
         changes = np.array([np.maximum(change(j, 0.0), change(j, 2.0)) for j in range(len(u))])

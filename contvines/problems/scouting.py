@@ -278,9 +278,9 @@ class Scout:
         self.work.residual[:] = np.tile(noise, self.n // len(noise))
         border = normal / np.abs(normal).max()
         self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, response)
-        moved = float((np.abs(step[:-1]) / self.scale).max())
-        if np.isfinite(moved) and moved > DERIVATIVES.roundoff:
-            self.noise = min(moved, DERIVATIVES.believed)
+        distance = float((np.abs(step[:-1]) / self.scale).max())
+        if np.isfinite(distance) and distance > DERIVATIVES.roundoff:
+            self.noise = min(distance, DERIVATIVES.believed)
 
     def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
         """Which entries of a tangent are not rounding errors: they do not change if another border is used."""

@@ -274,20 +274,20 @@ def legend_below(axes: Axes, handles: Sequence[Artist], own: bool) -> None:
     if not handles:
         return
     size = 0.92 * FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points()
-    look: dict[str, Any] = {"handles": handles, "borderpad": 0.0, "frameon": False, "fontsize": size}
-    look |= {"handlelength": 1.8, "handletextpad": 0.5, "columnspacing": 0.9, "labelspacing": 0.25}
+    options: dict[str, Any] = {"handles": handles, "borderpad": 0.0, "frameon": False, "fontsize": size}
+    options |= {"handlelength": 1.8, "handletextpad": 0.5, "columnspacing": 0.9, "labelspacing": 0.25}
     if own:
         place, room = {"loc": "outside lower center"}, figure.bbox.width
     else:
         settle(figure)
         place, room = {"loc": "upper center", "borderaxespad": 0.0}, axes.bbox.width
     columns, rows = len(handles), 1
-    legend = (figure if own else axes).legend(ncols=columns, **place, **look)
+    legend = (figure if own else axes).legend(ncols=columns, **place, **options)
     while legend.get_window_extent().width > room and columns > 1:
         legend.remove()
         rows += 1
         columns = -(-len(handles) // rows)
-        legend = (figure if own else axes).legend(ncols=columns, **place, **look)
+        legend = (figure if own else axes).legend(ncols=columns, **place, **options)
     settle(figure)
     for _ in range(0 if own else 3):  # the layout lowers the axes for the legend, which moves it again
         box = axes.xaxis.get_tightbbox()

@@ -48,9 +48,9 @@ def figures(value: float, apart: float = 0.0) -> str:
         return str(value)
     if size <= max(ROUNDED, ROUNDING_APART * apart):
         return "0"
-    whole = math.floor(math.log10(size)) + 1
-    digits = max(DIGITS, whole + math.ceil(-math.log10(apart)) if apart > 0.0 else 0)
-    return f"{value:.0f}" if digits < whole and size < WHOLE else f"{value:.{digits}g}"
+    digits_before = math.floor(math.log10(size)) + 1
+    digits = max(DIGITS, digits_before + math.ceil(-math.log10(apart)) if apart > 0.0 else 0)
+    return f"{value:.0f}" if digits < digits_before and size < WHOLE else f"{value:.{digits}g}"
 
 
 def complex_figures(values: Iterable[complex]) -> str:

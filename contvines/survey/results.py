@@ -297,10 +297,10 @@ def load_survey(path: str | Path) -> Survey:
         )
         notes = data["note"].values.astype(object)
         plan = Plan(axes, samples)
-        whole = all(values.shape == plan.shape for values in (notes, *columns.values()))
+        complete = all(values.shape == plan.shape for values in (notes, *columns.values()))
     except (LookupError, ValueError, TypeError, AttributeError):
         raise damaged from None
-    if not whole:
+    if not complete:
         raise damaged
     return Survey(plan, columns, notes, units, metadata, notation)
 

@@ -280,10 +280,10 @@ def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
     nodes = solved_nodes(orbit.system(symmetric=False), orbit.nodes, orbit.params)
     if nodes is None:
         return None
-    moved = nodes - orbit.nodes
+    change = nodes - orbit.nodes
     for entry in orbit.flow.loose(orbit.model, orbit.word):  # a shift of the whole motion does not count
-        moved[:, entry] -= moved[:, entry].mean()
-    if np.abs(moved).max() > far * (1.0 + np.abs(orbit.nodes[:, 1:]).max()):
+        change[:, entry] -= change[:, entry].mean()
+    if np.abs(change).max() > far * (1.0 + np.abs(orbit.nodes[:, 1:]).max()):
         return None
     found = Orbit(orbit.model, orbit.word, orbit.periods, nodes, orbit.params)
     if not found.real:

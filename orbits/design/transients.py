@@ -213,8 +213,8 @@ def start_up(
     omega = float(model.phase_speed(params))
     rate = 0.5 * numbers["mass_ratio"] * numbers["damping"]
     if periods is None:
-        wanted = CONSTANTS / rate * omega / (2.0 * math.pi) if rate > 0.0 else MOST
-        periods = int(min(max(math.ceil(wanted), FEWEST), MOST))
+        periods_needed = CONSTANTS / rate * omega / (2.0 * math.pi) if rate > 0.0 else MOST
+        periods = int(min(max(math.ceil(periods_needed), FEWEST), MOST))
     if not 1 <= periods <= MOST:
         raise ParameterError(f"periods = {periods}: give 1 to {MOST}")
     if run_up is not None:

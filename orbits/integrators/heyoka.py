@@ -92,8 +92,8 @@ class _Variations(ABC):
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> None:
         heyoka, variables = _heyoka(), _variables(layout)
-        asked = variables + [heyoka.par[i] for i in active]
-        system = heyoka.var_ode_sys(list(zip(variables, lowered(layout, rates))), asked, order=1)
+        arguments = variables + [heyoka.par[i] for i in active]
+        system = heyoka.var_ode_sys(list(zip(variables, lowered(layout, rates))), arguments, order=1)
         self.n = n = len(variables)
         self._begin = np.concatenate([np.zeros(n), np.eye(n, n + len(active)).ravel()])
         self._integrator = self._made(system, {"compact_mode": len(system.sys) >= MANY})

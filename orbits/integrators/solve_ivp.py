@@ -110,15 +110,17 @@ class Flight:
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> None:
         n, m = len(rates), len(rates) + len(active)
-        asked = (*layout.states, *(layout.numbers[i] for i in active))
-        slopes = derivatives(rates, [variable(name) for name in asked])
+        arguments = (*layout.states, *(layout.numbers[i] for i in active))
+        slopes = derivatives(rates, [variable(name) for name in arguments])
         deriv = [[variable(f"d_{i}_{j}") for j in range(m)] for i in range(n)]
-        moved = [
+        deriv_rates = [
             sum((slopes[i][k] * deriv[k][j] for k in range(n)), slopes[i][j] if j >= n else constant(0.0))
             for i, j in np.ndindex(n, m)
         ]
         names = (str(d) for row in deriv for d in row)
-        self._path = _Path(Layout((*layout.states, *names), layout.clock, layout.numbers), [*rates, *moved])
+        self._path = _Path(
+            Layout((*layout.states, *names), layout.clock, layout.numbers), [*rates, *deriv_rates]
+        )
         self._begin = np.eye(n, m).ravel()
 
     def __call__(

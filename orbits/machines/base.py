@@ -346,12 +346,12 @@ class Model(Varying):
         """
         if not len(codes) or np.any(codes < 2) or np.any(codes > 4):
             return nodes
-        moved = nodes.copy()
+        shifted = nodes.copy()
         mean = nodes[:, 1].mean() - 0.5 * float(np.sum(cls.walls(params)))
-        moved[:, 1] -= mean
+        shifted[:, 1] -= mean
         if nodes.shape[1] > 2:
-            moved[:, 2] += cls.column(params, "mass_ratio") * mean
-        return moved
+            shifted[:, 2] += cls.column(params, "mass_ratio") * mean
+        return shifted
 
     @classmethod
     def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:

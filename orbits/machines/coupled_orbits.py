@@ -175,10 +175,10 @@ class StuckResponse:
 def stuck_response(params: np.ndarray) -> StuckResponse:
     """Return the response with the absorber stuck."""
     law = _law(params)
-    X, Y, held = law.stuck.X, law.stuck.Y, law.friction_left - abs(law.lean)
+    X, Y, reserve = law.stuck.X, law.stuck.Y, law.friction_left - abs(law.lean)
     amplitude = math.hypot(X, Y)
     shaking = law.whole * law.omega**2 * amplitude
-    return StuckResponse(amplitude, math.atan2(Y, X), shaking, law.whole * held - shaking)
+    return StuckResponse(amplitude, math.atan2(Y, X), shaking, law.whole * reserve - shaking)
 
 
 def stuck_frequencies(params: np.ndarray) -> np.ndarray:
@@ -189,10 +189,10 @@ def stuck_frequencies(params: np.ndarray) -> np.ndarray:
     """
     G, lam, eps, chi = (float(params[i]) for i in (0, 2, 3, 7))
     law = _law(params)
-    held = float(law.friction_left - abs(law.lean))
-    if held < 0.0:
+    reserve = float(law.friction_left - abs(law.lean))
+    if reserve < 0.0:
         return np.zeros(0)
-    square, hold, force = (eps * lam) ** 2, held**2, (eps * G) ** 2
+    square, hold, force = (eps * lam) ** 2, reserve**2, (eps * G) ** 2
     roots = polyroots(
         np.trim_zeros(
             [

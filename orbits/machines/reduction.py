@@ -110,8 +110,8 @@ def reduced(
 
 def _basis(mass: np.ndarray, modes: np.ndarray, bent: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Return directions (n, k): each of the first moves one kept degree of freedom by 1, the others move none of them."""
-    rest = bent - modes @ (modes.T @ (mass @ bent))
-    span = np.hstack([modes, rest / np.linalg.norm(rest, axis=0)])
+    remainder = bent - modes @ (modes.T @ (mass @ bent))
+    span = np.hstack([modes, remainder / np.linalg.norm(remainder, axis=0)])
     rows = span[kept]
     unmoved = np.linalg.svd(rows)[2][len(kept) :].T
     inside = span @ unmoved
@@ -178,10 +178,10 @@ def _read(name: str, text: str, folder: Path | None) -> Sequence[Sequence[float]
     from scipy.io import loadmat
     from scipy.sparse import issparse
 
-    held = {key: value for key, value in loadmat(path).items() if not key.startswith("__")}
-    if not variable and len(held) > 1:
-        raise ValueError(f"the file has {', '.join(held)}: name one, {file}:{next(iter(held))}")
-    value = held.get(variable or next(iter(held), ""))
+    arrays = {key: value for key, value in loadmat(path).items() if not key.startswith("__")}
+    if not variable and len(arrays) > 1:
+        raise ValueError(f"the file has {', '.join(arrays)}: name one, {file}:{next(iter(arrays))}")
+    value = arrays.get(variable or next(iter(arrays), ""))
     if value is None:
-        raise ValueError(f"the file has no {variable or name!r}; it has {', '.join(held) or 'nothing'}")
+        raise ValueError(f"the file has no {variable or name!r}; it has {', '.join(arrays) or 'nothing'}")
     return value.toarray() if issparse(value) else value  # type: ignore[union-attr]

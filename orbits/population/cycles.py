@@ -120,18 +120,18 @@ def fixed_point(
     x = np.array(x, dtype=float)
     image = step(x)
     for _ in range(ITERATIONS):
-        rest = x - image
-        far = float(np.abs(rest / size).max())
+        residual = x - image
+        far = float(np.abs(residual / size).max())
         if far < SOLVING.scaled:
             return x
         if not far < np.inf:
             return None
-        for j, moved in enumerate(np.where(x > middle, -shift, shift)):  # into the box
+        for j, offset in enumerate(np.where(x > middle, -shift, shift)):  # into the box
             trial = x.copy()
-            trial[j] += moved
-            matrix[:, j] = (step(trial) - image) / moved
+            trial[j] += offset
+            matrix[:, j] = (step(trial) - image) / offset
         try:
-            change = np.linalg.solve(matrix - one, rest)
+            change = np.linalg.solve(matrix - one, residual)
         except np.linalg.LinAlgError:
             return None
         length = float(np.abs(change / size).max())

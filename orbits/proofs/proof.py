@@ -253,11 +253,11 @@ def certificate(
 
 def numbers(machine: str, parameters: Mapping[str, Any], varying: Varying | None) -> dict[str, list[str]]:
     """Return [middle, radius, exponent] of each of the machine's numbers; the parameter to this exponent multiplies the number."""
-    moved = varying.numbers if varying else {}
+    varied = varying.numbers if varying else {}
     given: dict[str, list[str]] = {}
     for name in parameter_names(machine):
-        if name in moved:
-            factor, exponent = moved[name]
+        if name in varied:
+            factor, exponent = varied[name]
             given[name] = [plain(factor), "0", plain(str(Decimal(exponent)))]
         else:
             value = parameters[name] if name != "slope" else parameters.get(name, "0")

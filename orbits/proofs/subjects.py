@@ -302,16 +302,16 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
 def _moved(problem: Motions) -> Varying:
     """Return the machine's numbers that depend on the problem's parameter."""
     names = parameter_names(problem.model.name)
-    moved = {
+    varied = {
         name: (repr(float(factor)), int(power) if float(power).is_integer() else float(power))
         for name, factor, power in zip(problem.model.parameter_names, *problem.path)
         if power != 0.0 and name in names
     }
-    if not moved:
+    if not varied:
         raise ProofError(
             f"{problem.parameter} moves no number that the motion depends on: a special point against it cannot be proved"
         )
     return Varying(
         problem.parameter,
-        {name: ("1" if factor == "1.0" else factor, k) for name, (factor, k) in moved.items()},
+        {name: ("1" if factor == "1.0" else factor, k) for name, (factor, k) in varied.items()},
     )

@@ -258,8 +258,8 @@ def _without_events(simulator: Simulator, orbit: Motion) -> Replay:
     """Replay of an orbit without events; of a built-in machine, friction must hold the absorber."""
     model, params = orbit.model, orbit.params
     if model.in_cavity:
-        held = model.rest.reserve(params, model.rest.solved(params)) >= 0.0
-        return Replay(0.0, "") if held else Replay(np.inf, "friction does not hold the absorber")
+        sticks = model.rest.reserve(params, model.rest.solved(params)) >= 0.0
+        return Replay(0.0, "") if sticks else Replay(np.inf, "friction does not hold the absorber")
     simulator.begin(orbit.word, orbit.nodes[0])
     run = simulator.run(orbit.periods, 1)
     if len(run):
@@ -297,9 +297,9 @@ def _slope(simulator: Simulator, word: Word, node: np.ndarray, j: int, size: flo
     """Central difference of the return map by entry `j` of the first node; None if a displaced start has other events."""
     ends = []
     for sign in (1.0, -1.0):
-        moved = np.array(node, dtype=float)
-        moved[j] += sign * size
-        run, message = go_round(simulator, word, moved, len(word))
+        displaced = np.array(node, dtype=float)
+        displaced[j] += sign * size
+        run, message = go_round(simulator, word, displaced, len(word))
         if run is None or message:
             return None
         ends.append(run.nodes[-1])

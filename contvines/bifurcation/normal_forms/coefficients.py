@@ -248,15 +248,15 @@ class Forms:
 
         NaN if the equations cannot be evaluated.
         """
-        moved = self.whole + (point if following is None else np.append(point, self._carrier @ following))
-        moved, rows = moved * self._units_of(len(moved)), self.rate * self.units
+        unknowns = self.whole + (point if following is None else np.append(point, self._carrier @ following))
+        unknowns, rows = unknowns * self._units_of(len(unknowns)), self.rate * self.units
         if isinstance(self.open, Evaluable):  # residuals without derivatives
             with np.errstate(all="ignore"):
                 try:
-                    return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n] / rows
+                    return np.asarray(self.open.residuals(unknowns, self.p), dtype=float)[: self.n] / rows
                 except (ValueError, ArithmeticError):
                     return np.full(self.n, np.nan)
-        if not math.isfinite(self.open.kernels.linearise(self.open.data, moved, self.p, self.open_work)):
+        if not math.isfinite(self.open.kernels.linearise(self.open.data, unknowns, self.p, self.open_work)):
             return np.full(self.n, np.nan)
         return np.array(array_of(self.open_work).reshape(-1)[: self.n]) / rows
 

@@ -175,15 +175,15 @@ def _null(matrix: sp.csc_array, value: complex, n: int) -> tuple[complex, np.nda
         raise ValueError("F_u has no factors at the critical eigenvalue")
     found = []
     for transposed, product in (("N", matrix), ("T", matrix.T)):
-        vector, rest = np.random.default_rng(6).standard_normal(n).astype(complex), np.inf
+        vector, residual = np.random.default_rng(6).standard_normal(n).astype(complex), np.inf
         for _ in range(SWEEPS):
             vector = factors.solve(vector, transposed)
             vector = vector / np.linalg.norm(vector)
             image = product @ vector
             current = float(np.linalg.norm(image - (vector.conj() @ image) * vector))
-            if not current < 0.5 * rest:
+            if not current < 0.5 * residual:
                 break
-            rest = current
+            residual = current
         if not np.isfinite(vector).all():
             raise ValueError("F_u has no eigenvector at the critical eigenvalue")
         found.append(vector)

@@ -58,22 +58,22 @@ def restarted(
     matrix = LinearOperator((n, n), matvec=apply, dtype=float)  # type: ignore[call-arg]
     restart = n if n <= ALL else RESTART
     x = np.zeros(n) if guess is None else guess.copy()
-    rest = side if guess is None else side - apply(x)
-    gap = float(np.linalg.norm(rest)) / size
+    residual = side if guess is None else side - apply(x)
+    gap = float(np.linalg.norm(residual)) / size
     if not gap < 1.0:
-        x, rest, gap = np.zeros(n), side, 1.0
+        x, residual, gap = np.zeros(n), side, 1.0
     idle = 0
     for _ in range(CYCLES):
         if gap <= accuracy:
             break
-        step, missed = gmres(matrix, rest, rtol=accuracy / gap, atol=0.0, restart=restart, maxiter=1)
+        step, missed = gmres(matrix, residual, rtol=accuracy / gap, atol=0.0, restart=restart, maxiter=1)
         trial = x + step
         rest_of_it = side - apply(trial)
         found = float(np.linalg.norm(rest_of_it)) / size
         idle = 0 if found <= GAIN * gap else idle + 1
         if not found < gap:
             break
-        x, rest, gap = trial, rest_of_it, found
+        x, residual, gap = trial, rest_of_it, found
         if idle and (not missed or idle >= IDLE):
             break
     return x, gap

@@ -192,14 +192,14 @@ def _refined(
         scale = float(np.abs(work.matrix.data).max(initial=0.0))
         before = error = math.inf
         for _ in range(sweeps):
-            rest = sides - _product(work, border, x)
-            rough = np.abs(rest).max(axis=0) / np.maximum(size, scale * np.abs(x).max(axis=0))
+            residual = sides - _product(work, border, x)
+            rough = np.abs(residual).max(axis=0) / np.maximum(size, scale * np.abs(x).max(axis=0))
             error = float(rough.max())
             if not error > LINEAR.refined or not error < shrink * before:
                 break
             before = error
-            more = factors.solve(rest[:-1])
-            low = (rest[-1] - border[:-1] @ more) / corner
+            more = factors.solve(residual[:-1])
+            low = (residual[-1] - border[:-1] @ more) / corner
             x[-1] += low
             x[:-1] += more - np.outer(column, low)
         if not error < enough:
@@ -223,8 +223,8 @@ def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np
         except RuntimeError:
             continue
         x = factors.solve(scaled)
-        rest = scaled - matrix @ x
-        more = factors.solve(rest)
+        residual = scaled - matrix @ x
+        more = factors.solve(residual)
         return (x + more if np.isfinite(more).all() else x), (0.0 if shift else factors.sign)
     return np.full_like(sides, np.nan), 0.0
 

@@ -128,9 +128,9 @@ class Solutions:
     def loads(self, rubbing: bool) -> dict[str, np.ndarray]:
         """Return the measures of `machine.load_names`, with losses of friction if `rubbing`; sums over impacts are taken wall by wall."""
         machine, params = self.machine, self.params
-        walls, held = [machine.contacts[j].letter for j in machine.equations.gap], None
+        walls, contact_time = [machine.contacts[j].letter for j in machine.equations.gap], None
         if "peak_force" in machine.load_names:
-            held = params[:, machine.parameter_names.index(CONTACT)] * machine.equations.factors.get(
+            contact_time = params[:, machine.parameter_names.index(CONTACT)] * machine.equations.factors.get(
                 CONTACT, 1.0
             )
         speeds, restitution, mass = (
@@ -138,7 +138,7 @@ class Solutions:
             for name in ("speeds", "restitution", "mass")
         )
         at = [letter.text for _, letter in self._hits]
-        found = loads(speeds, restitution, mass, at, walls, self.period, held)
+        found = loads(speeds, restitution, mass, at, walls, self.period, contact_time)
         if rubbing:
             rubbed = np.zeros(len(self.nodes))
             for k in range(len(self.nodes) if machine.equations.limit else 0):
