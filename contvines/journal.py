@@ -230,11 +230,11 @@ def comments(result: Resumable) -> list[str]:
     return [as_text(data["made"]), *([f"{named}, the study:", *text.splitlines()] if study else [])]
 
 
-def as_text(made: dict[str, str]) -> str:
+def as_text(origin: dict[str, str]) -> str:
     """Format the result of `provenance` as one line; an empty string for an empty dict."""
-    if not made:
+    if not origin:
         return ""
     return (
-        f"made {made.get('date', '')} with contvines {made.get('contvines', '?')}, numpy {made.get('numpy', '?')}, "
-        f"scipy {made.get('scipy', '?')}, Python {made.get('python', '?')}, {made.get('core', '?')} core, {made.get('platform', '?')}"
+        f"made {origin.get('date', '')} with contvines {origin.get('contvines', '?')}, numpy {origin.get('numpy', '?')}, "
+        f"scipy {origin.get('scipy', '?')}, Python {origin.get('python', '?')}, {origin.get('core', '?')} core, {origin.get('platform', '?')}"
     )

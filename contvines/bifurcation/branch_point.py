@@ -59,14 +59,14 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
     """
     engine = segment.engine
     folds = [e.position for e in found if e.kind == "fold"]
-    met = [e.position for e in found if e.role is Role.MEETING]
-    points = _sharpened(segment, _by_multipliers(segment, folds, met))
+    meetings = [e.position for e in found if e.role is Role.MEETING]
+    points = _sharpened(segment, _by_multipliers(segment, folds, meetings))
     if not points and engine.exchanges and (double := _exchange(segment)) is not None:
         points.append(double)
     counted = sum(e.kind == "branch-point" for e in points)
-    if segment.a.sign * segment.b.sign < 0.0 and (counted + len(met)) % 2 == 0:
+    if segment.a.sign * segment.b.sign < 0.0 and (counted + len(meetings)) % 2 == 0:
         root = _by_sign(segment)
-        if root is not None and not _near(segment, root.position, met):
+        if root is not None and not _near(segment, root.position, meetings):
             turning = _near(segment, root.position, folds)
             # a branch may turn exactly where it meets another one; at a plain fold the change of sign is rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
@@ -94,7 +94,7 @@ def _may_pass(segment: Segment, root: Root) -> bool:
     return any(np.abs(engine.spectrum(row)).max(initial=0.0) > 0.5 for row in rows)
 
 
-def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> list[Located]:
+def _by_multipliers(segment: Segment, folds: list[float], meetings: list[float]) -> list[Located]:
     """Locate multipliers that cross +1 elsewhere than at the given folds and meetings."""
     engine = segment.engine
     tests = passing(segment, "plus")
@@ -108,7 +108,7 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
     points = []
     for test in tests:
         root = locate(segment, test.function, jump=test.jump)
-        if root is None or not root.continuous or _near(segment, root.position, folds + met):
+        if root is None or not root.continuous or _near(segment, root.position, folds + meetings):
             continue
         unit = min(1.0, *(float(np.abs(engine.spectrum(end.row)).max()) for end in (segment.a, segment.b)))
         if abs(test.function(root.point)) > engine.settings.critical * unit or _complex(segment, root.point):

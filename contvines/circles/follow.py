@@ -101,12 +101,12 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
 # ---------------------------------------------------------------------- comparison with simulations
 def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> Circle:
     """A circle as data, with its replay, stability and simulated rotation number."""
-    there = section(curve.value)
+    at_value = section(curve.value)
     centre = curve.points.mean(axis=0)
     radius = float(np.sqrt(np.mean(np.sum((curve.points - centre) ** 2, axis=1))))
-    replay = between(there, curve)
-    stable = _attracts(there, curve, birth, centre)
-    simulated = _simulated(there, curve, birth, centre, radius) if stable else None
+    replay = between(at_value, curve)
+    stable = _attracts(at_value, curve, birth, centre)
+    simulated = _simulated(at_value, curve, birth, centre, radius) if stable else None
     # the displacement decreased at first, but the simulation leaves the circle
     if stable and simulated is None:
         stable = None
@@ -201,18 +201,18 @@ def _motion_beyond(section: Callable[[float], Section], found: list[Curve], birt
     last = found[-1]
     before = found[-2].value if len(found) > 1 else birth.p
     value = last.value + 0.25 * (last.value - before)
-    here, x = section(value), last.points[0]
+    at_value, x = section(value), last.points[0]
     far = CIRCLES.far * birth.frame.size
     same = CIRCLES.same * birth.frame.size
-    patience = _returns(here, PATIENCE)
+    patience = _returns(at_value, PATIENCE)
     for returns in (patience // 20, patience // 4, patience):
         for _ in range(returns):
-            x = here.step(x)
+            x = at_value.step(x)
             if not np.linalg.norm(x) < far:
                 return {"value": value, "kind": "leaves"}
         first = x
         for n in range(1, LONGEST + 1):
-            x = here.step(x)
+            x = at_value.step(x)
             if np.abs(x - first).max() < same:
                 return {"value": value, "kind": "locked" if n > 1 else "fixed", "periods": n}
     return {"value": value, "kind": "wandering"}

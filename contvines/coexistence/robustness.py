@@ -144,7 +144,7 @@ def _range_text(first: float, last: float, lost: tuple[bool, bool], unit: str) -
     low, high = (f"{figures(x)} {unit}".rstrip() for x in (first, last))
     text = f"from {'' if lost[0] else 'at most '}{figures(first)} to {'' if lost[1] else 'at least '}{high}"
     beyond = ((False, "down to", low), (True, "up to", high))
-    unlost = " and ".join(f"{way} {end}" for above, way, end in beyond if not lost[above])
+    unlost = " and ".join(f"{word} {end}" for above, word, end in beyond if not lost[above])
     return f"{text}; not lost {unlost}, where the search ended" if unlost else text
 
 

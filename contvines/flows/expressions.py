@@ -193,13 +193,13 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     functions: dict[str, Function] = {}
     initial: dict[str, str] = {}  # states with initial values -> their lines, for messages
 
-    def new(name: str, where: str) -> str:
+    def new(name: str, place: str) -> str:
         if name == "t" or callable(WORDS.get(name)):
             raise ValueError(
-                f"{where}: the name {name!r} is that of {'the time' if name == 't' else 'a function'}; choose another one"
+                f"{place}: the name {name!r} is that of {'the time' if name == 't' else 'a function'}; choose another one"
             )
         if any(name in table for table in (rates, parameters, fixed, functions)):
-            raise ValueError(f"{where}: the name {name!r} is there twice; choose another one")
+            raise ValueError(f"{place}: the name {name!r} is there twice; choose another one")
         return name
 
     for number, raw in _whole_lines(Path(path).read_text(encoding="utf-8", errors="replace")):
@@ -209,39 +209,39 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
             continue
         if low == "done":
             break
-        where = f"{path}, line {number}: {raw.strip()!r}"
+        place = f"{path}, line {number}: {raw.strip()!r}"
         refused = next((reason for words, reason in REFUSED.items() if re.match(words, low)), "")
         if refused:
-            raise ValueError(f"{where}: {refused}")
+            raise ValueError(f"{place}: {refused}")
         if declared := DECLARED.match(low):
             for name, value in PARAMETER.findall(low[declared.end() :]):
                 if declared[1].startswith("i"):
-                    starts[name], initial[name] = _number(value, where), where
+                    starts[name], initial[name] = _number(value, place), place
                 else:
-                    parameters[new(name, where)] = _number(value, where)
+                    parameters[new(name, place)] = _number(value, place)
             continue
         if re.match(r"(par|number|init)\w*(\s|$)", low) and "=" not in low:
-            raise ValueError(f"{where}: it has no name=value")
+            raise ValueError(f"{place}: it has no name=value")
         if found := re.match(r"([a-z_]\w*)\s*'\s*=(.*)$|d([a-z_]\w*)/dt\s*=(.*)$", low):
             name, text = (found[1], found[2]) if found[1] else (found[3], found[4])
-            rates[new(name, where)] = _formula(text, where)
+            rates[new(name, place)] = _formula(text, place)
         elif found := re.match(r"([a-z_]\w*)\(0\)\s*=(.*)$", low):
-            starts[found[1]], initial[found[1]] = _number(found[2], where), where
+            starts[found[1]], initial[found[1]] = _number(found[2], place), place
         elif found := re.match(r"([a-z_]\w*)\(([^)]*)\)\s*=(.*)$", low):
             names = [part.strip() for part in found[2].split(",") if part.strip()]
-            functions[new(found[1], where)] = Function(names, _formula(found[3], where))
+            functions[new(found[1], place)] = Function(names, _formula(found[3], place))
         elif found := re.match(r"!?([a-z_]\w*)\s*=(.*)$", low):
-            fixed[new(found[1], where)] = _formula(found[2], where)
+            fixed[new(found[1], place)] = _formula(found[2], place)
         else:
             raise ValueError(
-                f"{where}: only x'=..., dx/dt=..., par, init, functions and fixed quantities can be read"
+                f"{place}: only x'=..., dx/dt=..., par, init, functions and fixed quantities can be read"
             )
     if not rates:
         raise ValueError(f"{path}: it has no equation x'=... or dx/dt=...")
-    for name, where in initial.items():
+    for name, place in initial.items():
         if name not in rates:
             raise ValueError(
-                f"{where}: {name!r} is no state{did_you_mean(name, rates)}; states are {', '.join(rates)}"
+                f"{place}: {name!r} is no state{did_you_mean(name, rates)}; states are {', '.join(rates)}"
             )
     timed = _refuse_unknown(rates, parameters, fixed, functions)
     if not parameters:
@@ -304,23 +304,23 @@ def _refuse_unknown(
     return timed
 
 
-def _number(text: str, where: str) -> float:
+def _number(text: str, place: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"{where}: {text.strip()!r} is no number") from None
+        raise ValueError(f"{place}: {text.strip()!r} is no number") from None
 
 
-def _formula(text: str, where: str) -> Formula:
+def _formula(text: str, place: str) -> Formula:
     text = text.strip().replace("^", "**")
     if not ALLOWED.match(text) or "__" in text or re.search(r"[a-z_)]\s*\.", text):
-        raise ValueError(f"{where}: only numbers, names, + - * / ^ ( ) and commas can be read")
+        raise ValueError(f"{place}: only numbers, names, + - * / ^ ( ) and commas can be read")
     text = TOKEN.sub(lambda found: found[0] + "_" if found[1] else found[0], text)
     try:
         tree = ast.parse(text, mode="eval")
     except SyntaxError:
         raise ValueError(
-            f"{where}: this is no formula: a formula has numbers and names with + - * / ^ ( ) between them"
+            f"{place}: this is no formula: a formula has numbers and names with + - * / ^ ( ) between them"
         ) from None
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
     called = {id(node.func) for node in calls}
@@ -328,9 +328,9 @@ def _formula(text: str, where: str) -> Formula:
     if any(isinstance(node, ast.Tuple) for node in ast.walk(tree)) or not all(
         isinstance(node.func, ast.Name) for node in calls
     ):
-        raise ValueError(f"{where}: this is no formula: a comma or a bracket is at a wrong place")
+        raise ValueError(f"{place}: this is no formula: a comma or a bracket is at a wrong place")
     arguments = [(node.func.id[:-1], len(node.args)) for node in calls if isinstance(node.func, ast.Name)]
-    return Formula(where, compile(tree, where, "eval"), names, arguments)
+    return Formula(place, compile(tree, place, "eval"), names, arguments)
 
 
 def _evaluator(

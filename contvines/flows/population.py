@@ -286,11 +286,11 @@ class Settling:
         """Integrate until all starts are recognised or all rounds are over; forced flows in whole periods."""
         march, far, rounds = self.march, self.population.field.settings.far, 0
         for steps, periods, most, repeats in zip(STEPS, PERIODS, FAILURES, REPEATS, strict=True):
-            ways: dict[int, list[Place]] = {int(i): [] for i in self.left[:most]}
+            paths: dict[int, list[Place]] = {int(i): [] for i in self.left[:most]}
             for _ in range(steps if period is None else periods):
                 left = self.left
                 if period is None:
-                    march.go(left, BLOCK, far=far, paths=ways)
+                    march.go(left, BLOCK, far=far, paths=paths)
                 else:
                     rounds += BLOCK_PERIODS
                     march.go(left, MOST_STEPS, until=rounds * period, far=far)
@@ -301,7 +301,7 @@ class Settling:
                     self._assign(k)
                 if not self.left.size:
                     return
-            self._recognise(ways, most, repeats)
+            self._recognise(paths, most, repeats)
         left = self.left
         if left.size:
             self._add(self.population.irregular(march.x[left[:BLOCKS]], self.p), left)
@@ -324,14 +324,14 @@ class Settling:
                 near = left[self.population.on(x[left], curve, motion.size)]
                 self.index[near], self.mirrored[near] = k, mirrored
 
-    def _recognise(self, ways: Mapping[int, Sequence[Place]], most: int, repeats: float) -> None:
+    def _recognise(self, paths: Mapping[int, Sequence[Place]], most: int, repeats: float) -> None:
         """Solve for the motions near states that are not yet recognised, up to `most` failures and `repeats` known motions."""
         tried: list[int] = []
         while len(tried) < most and repeats > 0:
             i = next((int(i) for i in self.left if i not in tried), None)
             if i is None:
                 return
-            motion = self.population.solved(self.march.x[i], ways.get(i, ()), self.p)
+            motion = self.population.solved(self.march.x[i], paths.get(i, ()), self.p)
             if motion is None:
                 tried.append(i)
             elif motion.curve is None:

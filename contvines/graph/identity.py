@@ -226,7 +226,7 @@ def _crossings(
             yield gap, False
 
 
-def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solved) -> bool:
+def parts_further_on(branch: Branch, known_engine: Engine, engine: Engine, first: Solved) -> bool:
     """Whether a branch whose first point equals a point of a known branch, within `Settings.same`, is a different branch that leaves at a small angle.
 
     It is followed with steps that double until it is away from the known branch, or far along it. Example: solutions of x (x - 1) (p - 3 x) = 0
@@ -236,7 +236,7 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
     ----------
     branch : Branch
         The known branch.
-    known : Engine
+    known_engine : Engine
         Its engine. It may have other unknowns for the same solutions: of half a cycle instead of the whole one.
     engine : Engine
         Engine of the new branch.
@@ -248,7 +248,7 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
         """Return the distance of a point from the known branch."""
         form = engine.problem.canonical(point.u, point.p)
         return min(
-            (gap for gap, solved in _crossings(branch, known, form, point.p) if solved), default=np.inf
+            (gap for gap, solved in _crossings(branch, known_engine, form, point.p) if solved), default=np.inf
         )
 
     same = engine.settings.same

@@ -37,17 +37,17 @@ def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
     return run.compared[key][2]
 
 
-def same_border(run: Run, label: str, known: Branch) -> str:
+def same_border(run: Run, label: str, branch: Branch) -> str:
     """Merge a border with that of the known branch beyond it, if both are the same point; return the label that remains."""
     graph = run.graph
     border = graph.special[label]
-    engine = run.engine(known.attached)
-    for i, other in known.marks:
+    engine = run.engine(branch.attached)
+    for i, other in branch.marks:
         point = graph.special[other]
         if other == label or point.kind not in BORDERS or not _in_one_place(run, point, border):
             continue
         if may_be_one(border.attached, border.u, border.value, point, run.settings.same) or is_end(
-            known, engine, i, run.form(border)
+            branch, engine, i, run.form(border)
         ):
             run.merge(label, other)
             return other

@@ -73,7 +73,7 @@ def mark_locus(locus: Locus) -> tuple[Found, ...]:
 
 def mark(
     locus: Locus,
-    known: dict[str, PlanePoint],
+    points: dict[str, PlanePoint],
     label: Callable[[str], str],
     same: Callable[[PlanePoint, PlanePoint], bool],
 ) -> tuple[Found, ...]:
@@ -82,7 +82,7 @@ def mark(
     Parameters
     ----------
     locus : Locus
-    known : dict of PlanePoint
+    points : dict of PlanePoint
         Known points by label; extended in place.
     label : callable
         prefix -> next label with this prefix.
@@ -96,11 +96,11 @@ def mark(
     """
     by_name, marked = {kind.name: kind for kind in locus.kinds}, dict[str, Found]()
     for index, point in find(locus):
-        before = next((other for other in known.values() if same(point, other)), None)
+        before = next((other for other in points.values() if same(point, other)), None)
         if before is None:
             point.label = label((by_name.get(point.kind) or CODIMENSION_TWO[point.kind]).label)
             point.coefficients = point.coefficients or coefficients(point)
-            before = known[point.label] = point
+            before = points[point.label] = point
         if locus.label not in before.on:
             before.on.append(locus.label)
         marked.setdefault(before.label, (index, before))
@@ -350,7 +350,7 @@ def becomes(locus: LocusProblem, place: Place) -> Becomes | None:
 
 
 def beginning(
-    locus: LocusProblem, end: Solved, within: Interval, met: Becomes | None = None, ahead: float = 0.0
+    locus: LocusProblem, end: Solved, within: Interval, simpler: Becomes | None = None, ahead: float = 0.0
 ) -> PlanePoint | None:
     """Find the point of codimension two at which a locus begins or ends because its motion becomes an equilibrium, a shorter or a symmetric motion.
 
@@ -364,21 +364,21 @@ def beginning(
         First or last point of the locus.
     within : (float, float)
         Interval of the second parameter.
-    met : Becomes, optional
+    simpler : Becomes, optional
         The other motion, if it is known.
     ahead : float
         Estimated distance of the parameters from those of the point.
     """
     place = _place(locus, end)
-    met, (_, p, q) = met or becomes(locus, place), place
-    if met is None or met.problem is None or met.u is None:
+    simpler, (_, p, q) = simpler or becomes(locus, place), place
+    if simpler is None or simpler.problem is None or simpler.u is None:
         return None
-    kinds = FIRST_OF_EQUILIBRIA if met.problem.spectrum == "flow" else FIRST_OF_CYCLES
-    parent = begin(Candidate(met.problem, met.kind, met.u, p, q, ""), locus.over, locus.bounds)
+    kinds = FIRST_OF_EQUILIBRIA if simpler.problem.spectrum == "flow" else FIRST_OF_CYCLES
+    parent = begin(Candidate(simpler.problem, simpler.kind, simpler.u, p, q, ""), locus.over, locus.bounds)
     wanted = [each for each in sought(parent) if each.kind in kinds.get(locus.condition, ())]
     if not isinstance(locus.base, Adaptive):
         wanted += borders(parent)
-    engine, start = first_point(parent, met.u, p, q, within, Settings())
+    engine, start = first_point(parent, simpler.u, p, q, within, Settings())
     if start is None:
         return None
     reach = REACH + 2.0 * ahead / float(np.linalg.norm(start.tangent[-2:]))

@@ -41,10 +41,10 @@ class Conditions:
     def __init__(self, given: list[Callable], functions: Differentiated, u: np.ndarray) -> None:
         self.given, self.count, self.node = given, len(given), len(u)
 
-        def together(u: np.ndarray, p: float) -> np.ndarray:
+        def all_values(u: np.ndarray, p: float) -> np.ndarray:
             return np.array([np.asarray(g(u, p)).reshape(-1)[0] for g in given])
 
-        self.functions = functions.of(together, name="conditions", rows=len(given))
+        self.functions = functions.of(all_values, name="conditions", rows=len(given))
         gradient = self.functions.dense_jacobian(u, functions.parameters.start)
         sizes = np.linalg.norm(gradient, axis=1)
         if not (np.isfinite(sizes).all() and (sizes > 0.0).all()):

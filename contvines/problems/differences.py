@@ -233,14 +233,14 @@ def noise_of(f: Line, spacing: float) -> np.ndarray:
     found, falling = before, np.ones(before.shape, dtype=bool)
     for _ in range(CLOSER_TABLES):
         spacing *= 0.001
-        here, still = _table(f, spacing)
-        falling &= ~still  # samples on one stair, or between two floating-point numbers, show no noise
-        less = here < 0.03 * before
-        found = np.where(falling, np.where(less, here, np.maximum(before, here)), found)
+        noise, flat = _table(f, spacing)
+        falling &= ~flat  # samples on one stair, or between two floating-point numbers, show no noise
+        less = noise < 0.03 * before
+        found = np.where(falling, np.where(less, noise, np.maximum(before, noise)), found)
         falling &= less
         if not falling.any():
             break
-        before = here
+        before = noise
     return found
 
 
@@ -270,14 +270,14 @@ def roughness(f: Line) -> np.ndarray:
 def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Noise of each entry from one table of differences, and whether most neighbouring samples are identical."""
     table = np.array([f(k * spacing) for k in range(9)])
-    still = np.count_nonzero(np.diff(table, axis=0), axis=0) < 4
+    flat = np.count_nonzero(np.diff(table, axis=0), axis=0) < 4
     estimates = []
     for k in range(1, 7):
         table = np.diff(table, axis=0)
         if k >= 4:
             gamma = factorial(k) ** 2 / factorial(2 * k)
             estimates.append(np.sqrt(gamma * (table**2).mean(axis=0)))
-    return np.median(estimates, axis=0), still
+    return np.median(estimates, axis=0), flat
 
 
 def _continuous(f: Line, t: float, r: int, noticeable: float) -> bool:
@@ -319,21 +319,21 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float) -> float | N
         Sizes around this one are tried.
     """
     with np.errstate(all="ignore"):
-        here, there = f(0.0, 0.0), f(0.0, 1.0)
-        direct = np.abs(there - here)
-        plain = direct > DERIVATIVES.cancelled * EPSILON * np.maximum(np.abs(here), np.abs(there))
+        start, end = f(0.0, 0.0), f(0.0, 1.0)
+        direct = np.abs(end - start)
+        plain = direct > DERIVATIVES.cancelled * EPSILON * np.maximum(np.abs(start), np.abs(end))
 
-        def both(t: float) -> tuple[np.ndarray, np.ndarray]:
+        def change(t: float) -> tuple[np.ndarray, np.ndarray]:
             low, high = f(t, 0.0), f(t, 1.0)
             floor = DERIVATIVES.mixed * EPSILON * np.max([np.abs(low), np.abs(high), direct], axis=0)
-            return np.abs((high - low) - (there - here)), floor
+            return np.abs((high - low) - (end - start)), floor
 
         for t in guess * FACTOR ** np.arange(-REACH, REACH + 1.0):
-            mixed, floor = both(t)
+            mixed, floor = change(t)
             reliable = plain & (mixed > floor) & np.isfinite(mixed)
             if reliable.any():
                 # where large terms of this unknown cancel in a row, rounding absorbs the effect of the other one
-                reliable &= np.abs(both(SECOND_LENGTH * t)[0] / SECOND_LENGTH - mixed) <= 0.05 * mixed
+                reliable &= np.abs(change(SECOND_LENGTH * t)[0] / SECOND_LENGTH - mixed) <= 0.05 * mixed
             if reliable.any():
                 return float(t * (direct[reliable] / mixed[reliable]).min())
     return None

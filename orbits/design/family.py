@@ -324,8 +324,8 @@ class _SweptMotions:
 
     def at(self, value: float, start: Start, transient: float = USUAL) -> SweepRow:
         """Simulate from `start` at one value; return the motion on which it settles."""
-        ways = {"transient": transient, "exponents": False}
-        (row,) = sweep(self.model, self.over, [value], start=start, **ways, **self.numbers)
+        options = {"transient": transient, "exponents": False}
+        (row,) = sweep(self.model, self.over, [value], start=start, **options, **self.numbers)
         return row
 
     def response(self, row: SweepRow) -> float:

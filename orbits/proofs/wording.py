@@ -27,9 +27,9 @@ def spelling(motif: Motif, parameters: Mapping[str, Any]) -> str:
     if motif.half:
         return f"symmetric {word.with_image().spelled()}"
     # if both sides are equal, mirror images are motions of the machine for every value of the parameter
-    alike = all(parameters.get(f"{name}_left") == parameters.get(f"{name}_right") for name in SIDED)
+    symmetric = all(parameters.get(f"{name}_left") == parameters.get(f"{name}_right") for name in SIDED)
     slope = float(parameters.get("slope", 0.0 if motif.machine != "cavity" else 1.0))
-    return word.spelled(alike and slope == 0.0)
+    return word.spelled(symmetric and slope == 0.0)
 
 
 def said(lines: Sequence[str], obstacles: Sequence[Obstacle]) -> str:

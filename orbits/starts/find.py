@@ -330,9 +330,9 @@ def directed(text: str | Word, reading: Word, nodes: np.ndarray) -> Word:
     places = np.array(
         [{"L": 1.0, "R": -1.0}.get(letter, w) for letter, w in zip(reading.events, nodes[:, 1])]
     )
-    ways = np.sign(np.roll(places, -1) - places)
-    found = max((reading, *_others(reading, ways)), key=lambda word: _agreement(word, ways))
-    if found.modes == reading.modes or _agreement(found, ways) < np.count_nonzero(found.modes):
+    directions = np.sign(np.roll(places, -1) - places)
+    found = max((reading, *_others(reading, directions)), key=lambda word: _agreement(word, directions))
+    if found.modes == reading.modes or _agreement(found, directions) < np.count_nonzero(found.modes):
         return reading
     stated = not isinstance(text, str) or "+" in text or "-" in text or "−" in text
     if stated:
@@ -343,8 +343,8 @@ def directed(text: str | Word, reading: Word, nodes: np.ndarray) -> Word:
     return found
 
 
-def _agreement(word: Word, ways: np.ndarray) -> float:
-    return float(np.dot(word.modes, ways))
+def _agreement(word: Word, directions: np.ndarray) -> float:
+    return float(np.dot(word.modes, directions))
 
 
 def _others(reading: Word, directions: np.ndarray) -> list[Word]:

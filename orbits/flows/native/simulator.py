@@ -220,13 +220,13 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         """Move a motion that creeps along the cavity close to a wall; return whether it was moved."""
         if self.engine.moving_cavity or not len(run):
             return False
-        ways = creep(run.nodes, run.codes, run.modes, longest)
-        if ways is None:
+        steps = creep(run.nodes, run.codes, run.modes, longest)
+        if steps is None:
             return False
         left, right = self.engine.walls(self.params)
         places, drift = (
-            run.nodes[-len(ways) :, 1],
-            float(ways[-1]),
+            run.nodes[-len(steps) :, 1],
+            float(steps[-1]),
         )  # the extreme positions are turns and sticks
         room = left - places.max() if drift > 0.0 else right - places.min()
         times = math.floor(room / drift) - 1
