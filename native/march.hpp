@@ -213,7 +213,7 @@ inline Status march(Frame& f, const Chunk& chunk, whole first, whole stop, doubl
 enum Spectrum { NONE, MAP, FLOW, REAL };
 enum What { NOTHING, MARGINS, SLOPE, SIGN, MULTIPLIER };
 enum Sort { MINUS = -1, PAIR = 0, PLUS = 1 };
-struct Aim { whole what, columns; const whole* column; whole count, kind, sort, rank, anyway; };
+struct Aim { whole test, columns; const whole* column; whole count, kind, sort, rank, anyway; };
 
 inline bool belongs(double im, whole kind, whole sort) { return sort == PAIR ? im > 0.0 : kind == REAL || im == 0.0; }
 inline double size_among(double re, double im, whole kind, whole sort) {
@@ -250,14 +250,14 @@ inline double multiplier_test(const double* row, whole count, whole kind, whole 
     return smaller(larger(value, -LIMIT), LIMIT);
 }
 inline double probe(const Aim& aim, const double* row, double slope, double sign) {
-    if (aim.what == MARGINS) {
+    if (aim.test == MARGINS) {
         double value = 1.0;
         for (whole j = 0; j < aim.columns; j++)
             if (row[aim.column[j]] < value) value = row[aim.column[j]];  // NaN counts as not applicable
         return value;
     }
-    if (aim.what == SLOPE) return slope;
-    if (aim.what == SIGN) return sign;
+    if (aim.test == SLOPE) return slope;
+    if (aim.test == SIGN) return sign;
     return multiplier_test(row, aim.count, aim.kind, aim.sort, aim.rank);
 }
 
@@ -342,7 +342,7 @@ inline Outcome points(Frame& f, const double* chord, double start, double length
     const Table& table = *f.table;
     const whole n = f.unknowns;
     auto& bracket = *reinterpret_cast<Bracket*>(f.bracket);
-    const bool searching = aim.what != NOTHING;
+    const bool searching = aim.test != NOTHING;
     Outcome outcome = NOWHERE;
     whole stage = 0, place = 0;
     double s = places[0], first_value = 0.0, first_p = 0.0;

@@ -77,7 +77,7 @@ class Ending:
         return cls(Reason[status.name], float(value))
 
     @classmethod
-    def said(cls, text: str) -> Ending:
+    def from_text(cls, text: str) -> Ending:
         """Return an ending that is only a sentence."""
         return cls(Reason.SAID, text=text)
 
@@ -162,7 +162,7 @@ class Branch:
     margin: np.ndarray = field(repr=False)
     stable: np.ndarray | None = field(repr=False)
     real: bool = True
-    endings: tuple[Ending, Ending] = (Ending.said(""), Ending.said(""))
+    endings: tuple[Ending, Ending] = (Ending.from_text(""), Ending.from_text(""))
     closed: bool = False
     seed: str | None = None
     marks: tuple[tuple[int, str], ...] = ()

@@ -29,7 +29,7 @@ class Effort:
 
     def __init__(self, population: Population, budget: int, points: Callable[[], int]) -> None:
         self.population, self.budget, self.points = population, budget, points
-        self.begun, self.started = population.work, monotonic()
+        self.work_before, self.started = population.work, monotonic()
         self.waiting: dict[str, int] = {}  # number of known pieces left, by kind of work
         # number of finished pieces and their seconds, by kind of work
         self._took: dict[str, tuple[int, float]] = {}
@@ -37,7 +37,9 @@ class Effort:
     @property
     def spent(self) -> int:
         """Units of work done so far, by points of branches and by simulation."""
-        return int(self.population.price * (self.points() + (self.population.work - self.begun) / PERIODS))
+        return int(
+            self.population.price * (self.points() + (self.population.work - self.work_before) / PERIODS)
+        )
 
     @property
     def over(self) -> bool:

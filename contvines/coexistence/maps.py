@@ -227,10 +227,10 @@ class _Iteration:
     def __init__(self, problem: MapProblem, p: float, sample: np.ndarray) -> None:
         self.functions, self.p = problem.functions, p
         self.value = problem.values.at(p)
-        self.together = self._takes_columns(sample[:7])
+        self.vectorised = self._takes_columns(sample[:7])
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
-        if self.together:
+        if self.vectorised:
             return np.array(self.functions.f(np.ascontiguousarray(x.T), self.value), dtype=float).T.copy()
         return np.array([self.one(point) for point in x])
 

@@ -318,7 +318,7 @@ class Aim:
 
     Attributes
     ----------
-    what : int
+    test : int
         MARGINS: the smallest of some margins; SLOPE: the parameter's component of the tangent; SIGN: the sign of the determinant; MULTIPLIER: a multiplier.
     columns : ndarray of int
         For MARGINS: their columns in a row.
@@ -328,7 +328,7 @@ class Aim:
         Not 0: if the ends of a segment do not have opposite signs, the end with the smaller value is taken as the zero.
     """
 
-    what: int
+    test: int
     columns: np.ndarray
     count: int = 0
     kind: int = NONE
@@ -348,15 +348,15 @@ def aim_at_multiplier(count: int, spectrum: str, sort: str, rank: int) -> Aim:
 
 def probe(aim, row, slope, sign):
     """Return the value of an aim's test function at a point with this row, parameter's component of the tangent, and sign of the determinant."""
-    if aim.what == MARGINS:
+    if aim.test == MARGINS:
         value = 1.0
         for j in aim.columns:
             if row[j] < value:  # NaN counts as not applicable
                 value = row[j]
         return value
-    if aim.what == SLOPE:
+    if aim.test == SLOPE:
         return slope
-    if aim.what == SIGN:
+    if aim.test == SIGN:
         return sign
     return multiplier(row, aim.count, aim.kind, aim.sort, aim.rank)
 

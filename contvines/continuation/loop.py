@@ -57,7 +57,7 @@ class InterpretedLoop(Corrector):
         found : Found
             Filled: entry i for position i, entry 0 for the zero of an aim.
         aim : Aim
-            Test function; with ``aim.what == NOTHING`` the points at `places` are computed.
+            Test function; with ``aim.test == NOTHING`` the points at `places` are computed.
 
         Returns
         -------
@@ -65,7 +65,7 @@ class InterpretedLoop(Corrector):
             With an aim, see :meth:`contvines.continuation.corrector.Corrector.search`.
         """
         with np.errstate(all="ignore"):
-            if aim.what != NOTHING:
+            if aim.test != NOTHING:
                 return self.search(way, found, aim)
             for i, s in enumerate(places):
                 self.point(way, s, found, i)

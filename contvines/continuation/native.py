@@ -138,7 +138,7 @@ class NativeLoop:
     def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
         """Solve for the points at some positions, or for the zero of an aim; see :meth:`contvines.continuation.loop.InterpretedLoop.points`."""
         columns = np.ascontiguousarray(aim.columns, dtype=np.int64)
-        aimed = pack(aim.what, len(columns), columns, aim.count, aim.kind, aim.sort, aim.rank, aim.anyway)
+        aimed = pack(aim.test, len(columns), columns, aim.count, aim.kind, aim.sort, aim.rank, aim.anyway)
         return _points()(
             self.at,
             place(way.chord),

@@ -321,7 +321,7 @@ class _Place(NamedTuple):
     low: float
     high: float
     error: float
-    what: SpecialPoint | Unresolved
+    subject: SpecialPoint | Unresolved
 
 
 def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, float]]) -> list[Unresolved]:
@@ -351,14 +351,14 @@ def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, floa
             groups.append([other])
             continue
         groups[-1].append(other)
-        if isinstance(one.what, SpecialPoint) and isinstance(other.what, SpecialPoint):
-            names = one.what.label, other.what.label
+        if isinstance(one.subject, SpecialPoint) and isinstance(other.subject, SpecialPoint):
+            names = one.subject.label, other.subject.label
             for label, neighbour in (names, names[::-1]):
                 run.remark(label, f"{gap:.1e} from {neighbour}: solutions between the two are not resolved")
             low, high = sorted((one.low, other.low))
             found.append(Unresolved(branch.label, low, high, one.at, "neighbours", points=names))
     for group in groups:
-        inside = [place.what for place in group if isinstance(place.what, Unresolved)]
+        inside = [place.subject for place in group if isinstance(place.subject, Unresolved)]
         if len(inside) > 1:
             found = [one for one in found if one not in inside]
             low, high = min(one.low for one in inside), max(one.high for one in inside)
@@ -371,6 +371,6 @@ def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, floa
 
 def _may_hide(one: _Place, other: _Place) -> bool:
     """Whether solutions between two places may be stable although those on both outer sides are not."""
-    if isinstance(one.what, SpecialPoint) and isinstance(other.what, SpecialPoint):
-        return a_sliver((one.what.kind,), (other.what.kind,))
+    if isinstance(one.subject, SpecialPoint) and isinstance(other.subject, SpecialPoint):
+        return a_sliver((one.subject.kind,), (other.subject.kind,))
     return True

@@ -108,7 +108,7 @@ def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
     """Rebuild a branch from the result of `content_of`."""
     entry = dict(content)
     entry["endings"] = _pair(
-        [Ending.said(text) for text in entry.pop("ended")]  # files of version 0.1 have sentences
+        [Ending.from_text(text) for text in entry.pop("ended")]  # files of version 0.1 have sentences
         if "ended" in entry
         else [Ending.from_dict(ending) for ending in entry["endings"]]
     )

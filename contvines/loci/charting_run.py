@@ -108,14 +108,14 @@ class Charting:
             self.numbers[prefix] = max(self.numbers[prefix], int(taken[len(prefix) :] or 0))
         self.forms: dict[str, Engine] = {}
         self.refused: list[str] = []
-        self.done, self.tracing, self.begun = 0, False, monotonic()
+        self.done, self.tracing, self.began = 0, False, monotonic()
 
     def tell(self, message: str, seconds: float | None = None) -> None:
         """Report progress; by default the remaining time is estimated from the starts done."""
         if self.progress is not None:
             waiting, loci, points = len(self.queue), len(self.chart.loci), len(self.chart.points)
             if seconds is None:
-                seconds = (monotonic() - self.begun) * waiting / self.done if self.done else float("nan")
+                seconds = (monotonic() - self.began) * waiting / self.done if self.done else float("nan")
             total = self.done + waiting + self.tracing
             self.progress(ChartProgress(message, loci, points, waiting, self.done, total, seconds))
 

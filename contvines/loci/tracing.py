@@ -188,7 +188,7 @@ def trace_locus(
     problem = locus_of(whole)
     ends = [becoming(half, within) for half in (back, ahead)]
     first_end, last_end = (
-        Ending.said(became or sentence(half)) for (became, _), half in zip(ends, (back, ahead))
+        Ending.from_text(became or sentence(half)) for (became, _), half in zip(ends, (back, ahead))
     )
     branch = make_branch(label, whole, real, (first_end, last_end), closed, start.seed)
     branch.description["unfolded"] = problem.condition == BRANCH

@@ -76,7 +76,7 @@ class UserFunction:
         called: str = CALLED,
     ) -> None:
         self.f, self.name, self.parameters, self.called = f, name, parameters, called
-        self.alone = not parameters.named
+        self.single = not parameters.named
 
     def raw(self, u: np.ndarray, p: complex) -> ArrayLike | Sparse | Operator:
         """Return f's result unchanged.
@@ -88,7 +88,7 @@ class UserFunction:
         """
         try:
             argument = readonly(u) if u.flags.writeable else u
-            return self.f(argument, p if self.alone else self.parameters.at(p))
+            return self.f(argument, p if self.single else self.parameters.at(p))
         except Exception as error:
             hint = ""
             if isinstance(error, ValueError) and "read-only" in str(error):

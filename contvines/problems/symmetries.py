@@ -298,8 +298,8 @@ class Pair(NamedTuple):
 
     u: np.ndarray
     p: float
-    here: np.ndarray
-    there: np.ndarray
+    value: np.ndarray
+    imaged: np.ndarray
 
 
 def _evaluated_pairs(
@@ -341,9 +341,9 @@ def _finite(values: Values, u: np.ndarray, p: float) -> np.ndarray | None:
 
 def _worst(tried: list[Pair], turn: Image, noise: np.ndarray) -> Asymmetry | None:
     """The largest disagreement with the image of F."""
-    expected = [turn(pair.here) for pair in tried]
+    expected = [turn(pair.value) for pair in tried]
     sizes = [
-        np.maximum(np.abs(pair.there), np.abs(other)) for pair, other in zip(tried, expected, strict=True)
+        np.maximum(np.abs(pair.imaged), np.abs(other)) for pair, other in zip(tried, expected, strict=True)
     ]
     allowed = IDENTITY.cancelled * np.max(sizes, axis=0) + NOISY * (noise + np.abs(turn(noise)))
     worst = None
@@ -359,13 +359,13 @@ def _worst(tried: list[Pair], turn: Image, noise: np.ndarray) -> Asymmetry | Non
 
 def _constant(tried: list[Pair], noise: np.ndarray) -> bool:
     """Whether one constant matrix maps F at all states to F at their images."""
-    values, image_values = np.array([pair.here for pair in tried]), np.array([pair.there for pair in tried])
-    sizes = np.maximum(np.abs(values).max(axis=0), np.abs(image_values).max(axis=0))
+    values, images = np.array([pair.value for pair in tried]), np.array([pair.imaged for pair in tried])
+    sizes = np.maximum(np.abs(values).max(axis=0), np.abs(images).max(axis=0))
     sizes[sizes == 0.0] = 1.0
-    values, image_values = values / sizes, image_values / sizes
-    weights = np.linalg.norm(np.hstack([values, image_values]), axis=1)
+    values, images = values / sizes, images / sizes
+    weights = np.linalg.norm(np.hstack([values, images]), axis=1)
     weights[weights == 0.0] = 1.0  # F is small at near states, which count as much as the others
-    matrix = np.linalg.lstsq(values / weights[:, None], image_values / weights[:, None], rcond=None)[0]
+    matrix = np.linalg.lstsq(values / weights[:, None], images / weights[:, None], rcond=None)[0]
     mixing = 1.0 + np.abs(matrix).sum(axis=0)
     allowed = IDENTITY.same * mixing * weights[:, None] + NOISY * mixing * float((noise / sizes).max())
-    return bool((np.abs(values @ matrix - image_values) <= allowed).all())
+    return bool((np.abs(values @ matrix - images) <= allowed).all())

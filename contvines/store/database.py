@@ -77,7 +77,7 @@ class Store:
         self._connection = connection
         self.path = path
         self._promised = promised  # fingerprint and study of a file that will be made with its first entry
-        self._kept: dict[tuple[str, str], tuple[str, dict[str, np.ndarray]]] = {}
+        self._written: dict[tuple[str, str], tuple[str, dict[str, np.ndarray]]] = {}
         self._version = 0
 
     @classmethod
@@ -235,14 +235,14 @@ class Store:
             # data_version changes when another process has written and may have replaced the entries of this one
             version = self._db.execute("PRAGMA data_version").fetchone()[0]
             if version != self._version:
-                self._kept.clear()
+                self._written.clear()
                 self._version = version
-            if not self._kept:
+            if not self._written:
                 self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
             present = {self._write_changed(*entry) for entry in entries}
-            for place in self._kept.keys() - present:
+            for place in self._written.keys() - present:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
-                del self._kept[place]
+                del self._written[place]
             self._db.execute("UPDATE meta SET value = ? WHERE key = 'finished'", (json.dumps(finished),))
             if finished and not graph.stopped:  # the journal is not needed any more
                 self._db.execute("DELETE FROM entry WHERE kind = 'journal'")
@@ -250,10 +250,10 @@ class Store:
     def _write_changed(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:
         """Write an entry of the graph unless it is unchanged (arrays are never changed in place); return its kind and key."""
         scalars, arrays = split(content)
-        written = self._kept.get((kind, key))
+        written = self._written.get((kind, key))
         if written is None or written[0] != scalars or not _same_arrays(written[1], arrays):
             self.put(kind, key, content)
-            self._kept[kind, key] = (scalars, arrays)
+            self._written[kind, key] = (scalars, arrays)
         return kind, key
 
     def graph(self, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
@@ -319,7 +319,7 @@ class Store:
                 yield
                 self._db.execute("COMMIT")
             except BaseException:
-                self._kept.clear()  # it is not certain any more which entries are in the file
+                self._written.clear()  # it is not certain any more which entries are in the file
                 if self._db.in_transaction:
                     self._db.execute("ROLLBACK")
                 raise

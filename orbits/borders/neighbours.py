@@ -123,14 +123,14 @@ def proposals(border: Border) -> Iterator[tuple[BranchAtBorder, str]]:
         chosen = [first]
         for j in vanishing:
             for edit in edits_at(orbit, j, problem.length):
-                same_change = edit.change.what is first.change.what
+                same_change = edit.change.effect is first.change.effect
                 if same_change and not any(_overlap(edit.change, other.change) for other in chosen):
                     chosen.append(edit)
                     break
         if len(chosen) > 1 and (found := branch_at_border(rewrite(problem, orbit, p, chosen))) is not None:
-            yield found, first.change.what.value
+            yield found, first.change.effect.value
         if (found := branch_at_border(border.rewrite(first))) is not None:
-            yield found, first.change.what.value
+            yield found, first.change.effect.value
 
 
 def followed(orbit: Orbit) -> bool:
@@ -191,7 +191,7 @@ class GrowingQuantity(NamedTuple):
             border[place], u[place] = 1.0, wanted
         elif change.grows is Grows.GAP:
             border[place], border[following] = -1.0, 1.0
-            if change.what is WordChange.CROSSINGS_APPEAR:
+            if change.effect is WordChange.CROSSINGS_APPEAR:
                 u[place] = 0.5 * (u[place] + u[following] - wanted)
                 u[following] = u[place] + wanted
             elif change.start == change.stop:  # the later event, at which friction gives way, stays

@@ -69,7 +69,7 @@ def escapes(border: Border, neighbours: list[Border]) -> Iterator[Seed]:
         root = new_orbit.root()
         shorter = (len(root.word), root.periods) != (len(other.word), other.periods)
         if not shorter and (other.symmetric or not new_orbit.symmetric) and followed(new_orbit):
-            note = f"{edit.change.what.value}: {escape(problem.symmetric, rounds)}"
+            note = f"{edit.change.effect.value}: {escape(problem.symmetric, rounds)}"
             yield Seed(*found, "border", note, False)
 
 

@@ -139,7 +139,7 @@ class Change:
     spots : tuple of Spot
         Position of each new event.
     grows : Grows
-    what : WordChange
+    effect : WordChange
     """
 
     start: int
@@ -148,7 +148,7 @@ class Change:
     modes: tuple[Mode, ...]
     spots: tuple[Spot, ...]
     grows: Grows
-    what: WordChange
+    effect: WordChange
 
 
 class Site(NamedTuple):

@@ -96,18 +96,18 @@ class _Variations(ABC):
         system = heyoka.var_ode_sys(list(zip(variables, lowered(layout, rates))), arguments, order=1)
         self.n = n = len(variables)
         self._begin = np.concatenate([np.zeros(n), np.eye(n, n + len(active)).ravel()])
-        self._integrator = self._made(system, {"compact_mode": len(system.sys) >= MANY})
+        self._integrator = self._build(system, {"compact_mode": len(system.sys) >= MANY})
         self._numbers = len(self._integrator.pars)
         self._done = heyoka.taylor_outcome.time_limit
 
     @abstractmethod
-    def _made(self, system: Any, options: dict[str, bool]) -> Any: ...
+    def _build(self, system: Any, options: dict[str, bool]) -> Any: ...
 
 
 class Flight(_Variations):
     """A flow with its derivatives, one flight at a time."""
 
-    def _made(self, system: Any, options: dict[str, bool]) -> Any:
+    def _build(self, system: Any, options: dict[str, bool]) -> Any:
         return _heyoka().taylor_adaptive(system, [0.0] * self.n, **options)
 
     def __call__(
@@ -127,7 +127,7 @@ class Flight(_Variations):
 class Flights(_Variations):
     """A flow with its derivatives, `LANES` flights at a time in the processor's vectors; each flight has its own steps."""
 
-    def _made(self, system: Any, options: dict[str, bool]) -> Any:
+    def _build(self, system: Any, options: dict[str, bool]) -> Any:
         return _heyoka().taylor_adaptive_batch(system.sys, np.tile(self._begin[:, None], LANES), **options)
 
     def __call__(

@@ -115,8 +115,8 @@ class Fleet:
         self.batch: Batch | None = simulator.settle_all(points, longest, workers)
         self.work = 0.0 if self.batch is None else float(self.batch.lasted.sum())
         self._forms: list[Form | None] = []
-        self._known: list[_Marks] = []
-        self._begun = 0.0
+        self._all_marks: list[_Marks] = []
+        self._started = 0.0
 
     def sorted(self) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         """Return the motions in the order of their first start, `index` and `mirrored`."""
@@ -132,18 +132,18 @@ class Fleet:
         if not self.free[i]:
             return self._assign(i, Motion("impossible"))
         simulator, point = self.simulator, self.points[i]
-        self._begun = simulator.time
+        self._started = simulator.time
         try:
             if self.batch is not None:
                 return self._of_batch(i, self.batch)
             clock, point = (point[0], point[1:]) if self.model.forced else (0.0, point)
             simulator.start(point, clock / TWO_PI)
-            self._begun = simulator.time
+            self._started = simulator.time
             return self._followed(i)
         except SimulationError:
             return self._assign(i, Motion("escaped"))
         finally:
-            self.work += simulator.time - self._begun
+            self.work += simulator.time - self._started
 
     # ------------------------------------------------------------------ one of many
     def _of_batch(self, i: int, batch: Batch) -> None:
@@ -155,7 +155,7 @@ class Fleet:
         if outcome == Outcome.LOST:
             return self._assign(batch.outcomes == outcome, Motion("escaped"))
         self.simulator.go_on(batch.states[i])
-        self._begun = self.simulator.time
+        self._started = self.simulator.time
         if outcome == Outcome.SETTLED:
             return self._found(self._attractor_reached(CHECK_PERIODS, self.longest, 1), i)
         return self._unsettled(i, batch)
@@ -274,11 +274,11 @@ class Fleet:
     def _nearest(self) -> tuple[_Marks | None, float, bool]:
         """The known motion nearest to the next section point, the distance relative to 1 + points, and whether its mirror image is the nearer one."""
         best: tuple[_Marks | None, float, bool] = (None, np.inf, False)
-        if not self._known:
+        if not self._all_marks:
             return best
         event, point = self.simulator.section()
         size = 1.0 + float(np.abs(point).max())
-        for marks in self._known:
+        for marks in self._all_marks:
             own, image = marks.distances(event, point[None])[:, 0] / size
             if min(own, image) < best[1]:
                 best = marks, float(min(own, image)), bool(image < own)
@@ -330,10 +330,10 @@ class Fleet:
         k = self._place(
             Motion(kind, word, periods, *self._solution(orbit), state=self.simulator.state.copy())
         )
-        marks = next((marks for marks in self._known if marks.place == k), None)
+        marks = next((marks for marks in self._all_marks if marks.place == k), None)
         if marks is None:
             marks = self._marks(k, orbit, max(periods, 1), free)
-            self._known.append(marks)
+            self._all_marks.append(marks)
         batch = self.batch
         if batch is None:
             nearest, _, mirrored = self._nearest()
@@ -369,7 +369,7 @@ class Fleet:
             image.append(simulator.image(simulator.point))
             simulator.follow(first + k + 1.0)
         simulator.go_on(state)
-        self._begun += simulator.time - start_time
+        self._started += simulator.time - start_time
         return _Marks(place, {"": np.array(own)}, {"": np.array(image)} if mirrored else {}, counted)
 
 

@@ -49,7 +49,7 @@ def _branch(label: str, points: np.ndarray, values: np.ndarray, eigenvalues: np.
         multipliers=eigenvalues.astype(complex),
         margin=np.full(len(values), np.inf),
         stable=eigenvalues[:, 0] <= 0,
-        endings=(Ending.said("reached the lower end"), Ending.said("reached the upper end")),
+        endings=(Ending.from_text("reached the lower end"), Ending.from_text("reached the upper end")),
         description={"name": "pitchfork", "factory": None},
         parameter="p",
         **more,

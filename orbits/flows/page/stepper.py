@@ -57,7 +57,7 @@ class Stepper:
         self.modes: tuple[int, ...] = ()
         self.count = 0  # events so far
         self._last = -1  # contact of the last event, if another event may follow at the same instant
-        self._made: dict[tuple[int, ...], Tools] = {}
+        self._compiled: dict[tuple[int, ...], Tools] = {}
         self._numbers: dict[tuple[int, ...], np.ndarray] = {}
         self._pushes: dict[tuple[int, tuple[int, ...]], Values] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
@@ -148,12 +148,12 @@ class Stepper:
     @property
     def _tools(self) -> Tools:
         """Compiled functions of the present mode."""
-        found = self._made.get(self.modes)
+        found = self._compiled.get(self.modes)
         if found is None:
             key, compiled = self.equations.pattern_key(self.modes), self.compiled
             guards = self.equations.pattern(key).guards
             found = Tools(compiled.run(key), compiled.watch(key), compiled.guards(key), guards)
-            self._made[self.modes] = found
+            self._compiled[self.modes] = found
         return found
 
     @property

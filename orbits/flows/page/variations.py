@@ -42,12 +42,12 @@ class Variations:
         )  # derivatives of the node's states by the start and the parameter
         self._clock = np.zeros(n + 1)
         self._row = np.empty(n + n * (n + 1))
-        self._known = True
+        self._valid = True
 
     @property
     def derivatives(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of the present states by those at the beginning, shape (n, n), and by the parameter, shape (n,); NaN after a wall has held."""
-        found = self._states if self._known else np.full_like(self._states, np.nan)
+        found = self._states if self._valid else np.full_like(self._states, np.nan)
         return found[:, :-1].copy(), found[:, -1].copy()
 
     def advance(self, until: float) -> tuple[int, int, int] | None:
@@ -56,10 +56,10 @@ class Variations:
         state, modes = stepper.state.copy(), stepper.modes
         begin, start = stepper.clock, stepper.base + stepper.clock
         event = stepper.advance(until)
-        if not self._known:
+        if not self._valid:
             return event
         if event is not None and event[1] in (HOLD, RELEASE):
-            self._known = False
+            self._valid = False
             return event
         end = begin + (stepper.base + stepper.clock - start)
         self._pass(state, modes, begin, end, event)
@@ -78,7 +78,7 @@ class Variations:
         key = stepper.equations.pattern_key(modes)
         numbers = compiled.numbers(stepper.params, modes)
         if not compiled.flight(key, self.active)(state, begin, end, numbers, self._row):
-            self._known = False
+            self._valid = False
             return
         arrival, sensitivity = self._row[:n], self._row[n:].reshape(n, n + 1)
         rates = compiled.rates(key)

@@ -25,9 +25,9 @@ def once(make: Callable[Concatenate[Compiled, Key], Made]) -> Callable[Concatena
     @wraps(make)
     def cached(self: Compiled, *args: Key.args, **named: Key.kwargs) -> Made:
         key = (make.__name__, args)
-        if key not in self.made:
-            self.made[key] = make(self, *args, **named)
-        return self.made[key]
+        if key not in self.cache:
+            self.cache[key] = make(self, *args, **named)
+        return self.cache[key]
 
     return cached
 
@@ -43,7 +43,7 @@ class Compiled:
     def __init__(self, equations: Equations) -> None:
         self.equations, self.layout = equations, equations.layout
         self.n = len(equations.states)
-        self.made: dict[Hashable, Any] = {}
+        self.cache: dict[Hashable, Any] = {}
         self.engine = engine()
 
     def _values(self, *values: Symbol) -> Values:

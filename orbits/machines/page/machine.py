@@ -93,7 +93,7 @@ class Machine(Varying):
                 f"parameters = {parameters!r} must have a value for each name, for example {{'gap': 1.0}}"
             )
         self._units = Units(units, states, tuple(parameters), phase_rate)
-        self.given_units = self._units.said
+        self.given_units = self._units.given
         parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
         checks.check_names(name, states, parameters, phase_rate, contacts)
         self.name = name

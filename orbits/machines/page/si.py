@@ -51,8 +51,8 @@ class Units:
     ) -> None:
         if not isinstance(units or {}, Mapping):
             raise PageError(f"units = {units!r} must have a unit for each name, for example {{'gap': 'mm'}}")
-        self.said, self.factors = dict(units or {}), {}
-        for name, unit in self.said.items():
+        self.given, self.factors = dict(units or {}), {}
+        for name, unit in self.given.items():
             if name not in (*states, *parameters):
                 hint = did_you_mean(name, [*states, *parameters])
                 raise PageError(f"units: {name!r} is no state and no parameter{hint}")
@@ -68,14 +68,14 @@ class Units:
 
     def number(self, name: str, value: Given | str) -> Given | float:
         """Return a value, such as "1.2 mm", in the unit of its name; a number is already in that unit."""
-        return counted(name, value, self.said.get(name, "")) if isinstance(value, str) else value
+        return counted(name, value, self.given.get(name, "")) if isinstance(value, str) else value
 
     def sizes(self, states: Sequence[str], parameters: Mapping[str, float], rate: float) -> np.ndarray:
         """Return the typical size of each state in its unit, at least 1; 1 for states that are neither lengths nor speeds.
 
         No parameter is a length of more than `LONGEST` typical lengths. A typical speed is a typical length times the rate (radians per second).
         """
-        unit = {name: size(text, "m") for name, text in self.said.items()}
+        unit = {name: size(text, "m") for name, text in self.given.items()}
         units = [unit[name] for name in states if unit.get(name)]
         if not units:
             return np.ones(len(states))
@@ -85,7 +85,7 @@ class Units:
         length = max(min(one for one in units if one), longest / LONGEST)
         found = np.ones(len(states))
         for i, name in enumerate(states):
-            speed = size(self.said[name], "m/s") if name in self.said else None
+            speed = size(self.given[name], "m/s") if name in self.given else None
             if unit.get(name) or speed:
                 found[i] = max(1.0, length * rate / speed if speed else length / (unit[name] or 1.0))
         return found
@@ -100,17 +100,17 @@ class Units:
         kinds = {f"x_{name}": name for name in e.states} | {f"p_{name}": name for name in e.p.__dict__}
         for table, kind in ((e.gap, "gap"), (e.velocity, "velocity")):
             for j, value in table.items():
-                names = [kinds[term] for term in _terms(value) if kinds.get(term) in self.said]
+                names = [kinds[term] for term in _terms(value) if kinds.get(term) in self.given]
                 for one, other in pairwise(names):
-                    if size(self.said[one], self.said[other]) is None:
+                    if size(self.given[one], self.given[other]) is None:
                         raise PageError(
-                            f"units: the {kind} of {e.contacts[j].described} adds {one} in {self.said[one]!r} to {other} in "
-                            f"{self.said[other]!r}; give units of one kind"
+                            f"units: the {kind} of {e.contacts[j].described} adds {one} in {self.given[one]!r} to {other} in "
+                            f"{self.given[other]!r}; give units of one kind"
                         )
         for name, rate in zip(e.states, e.still):
             (term, *more) = _terms(rate)
-            if not more and name in self.said and kinds.get(term) in self.said and term.startswith("x_"):
-                unit, wanted = self.said[kinds[term]], f"{self.said[name]}/s"
+            if not more and name in self.given and kinds.get(term) in self.given and term.startswith("x_"):
+                unit, wanted = self.given[kinds[term]], f"{self.given[name]}/s"
                 if size(unit, wanted) is None:
                     raise PageError(
                         f"units: the rate of {name}, in {wanted!r}, is {kinds[term]}, in {unit!r}; give {kinds[term]} in {wanted!r}, or in a unit of its kind"
@@ -118,13 +118,13 @@ class Units:
 
     def shown(self, states: Sequence[str]) -> dict[str, str]:
         """Return units of parameters, states and measures by name."""
-        if not self.said:
+        if not self.given:
             return {}
         of_states = {
-            f"{kind}_{name}": self.said[name] for name in states if name in self.said for kind in OF_A_STATE
+            f"{kind}_{name}": self.given[name] for name in states if name in self.given for kind in OF_A_STATE
         }
-        bands = {name: self.said[states[0]] for name in BAND if states[0] in self.said}
-        return {**self.said, **of_states, **bands, "period": "s", "time": "s", "approach_speed": "m/s"}
+        bands = {name: self.given[states[0]] for name in BAND if states[0] in self.given}
+        return {**self.given, **of_states, **bands, "period": "s", "time": "s", "approach_speed": "m/s"}
 
 
 def _terms(value: Symbol) -> list[str]:
