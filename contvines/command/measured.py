@@ -141,7 +141,7 @@ def written(path: Path | None, series: Series, quiet: bool) -> None:
 
 
 @dataclass
-class Told:
+class Measured:
     """Computed numbers and columns in the study's units: a transient, or a random response with standard errors.
 
     Attributes
@@ -191,8 +191,8 @@ class Told:
         if self.errors is None:
             return plot_transient(self.series[: self.drawn], self.hits, figsize=figsize)
         (_, hertz, frequencies), *densities = self.series
-        shown = {name: (values, unit) for name, unit, values in densities}
-        return plot_densities(frequencies, hertz, shown, figsize=figsize)
+        curves = {name: (values, unit) for name, unit, values in densities}
+        return plot_densities(frequencies, hertz, curves, figsize=figsize)
 
 
 def _rounded(value: float, error: float) -> tuple[str, str]:

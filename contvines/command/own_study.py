@@ -41,22 +41,22 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
 
     from ..flows.files import load_flow
 
-    said = str(data["model"]["name"])
-    if said == STRUCTURE:
+    name_given = str(data["model"]["name"])
+    if name_given == STRUCTURE:
         machine, data = _structure(data, path)
         return _page(data, path, machine)
-    if said in PAGES:
+    if name_given in PAGES:
         from orbits.machines.names import page_machine
 
-        machine = page_machine(said)
+        machine = page_machine(name_given)
         assert isinstance(machine, Machine)
         return _page(data, path, machine)
-    page, _, name = said.partition(":")
+    page, _, name = name_given.partition(":")
     if not name:
         raise StudyError(
-            f'[model] name = {said!r} names a file but no machine in it; for example "{page}:machine".'
+            f'[model] name = {name_given!r} names a file but no machine in it; for example "{page}:machine".'
         )
-    file = own_code(path, page, f"[model] name = {said!r}")
+    file = own_code(path, page, f"[model] name = {name_given!r}")
     flow = load_flow(file, name) if file.is_file() else None
     if flow is not None:
         return _flow(data, path, flow)
@@ -75,18 +75,18 @@ def _structure(data: dict[str, Any], path: Path) -> tuple[Machine, dict[str, Any
     from orbits.machines.parameters import ParameterError
     from orbits.machines.structure import GIVEN, MATRICES, MEANT, structure
 
-    model, start, go = (_section(data, name) for name in ("model", "start", "continue"))
+    model, start, continued = (_section(data, name) for name in ("model", "start", "continue"))
     for name in MATRICES:
         if name not in model:
             raise StudyError(
                 f'[model] {name} is missing; for example {name} = [[2, -1], [-1, 2]], "{name}.csv" or "model.mat:{name[0].upper()}".'
             )
     spec = {name: model[name] for name in (*MATRICES, *GIVEN) if name in model}
-    within = go.get("within") if go.get("parameter") == "frequency" else None
+    within = continued.get("within") if continued.get("parameter") == "frequency" else None
     highest = [x for x in (within if isinstance(within, list) else []) if isinstance(x, float | int)]
-    said = start.get("frequency", model.get("frequency", sum(highest) / len(highest) if highest else None))
-    if isinstance(said, float | int) and not isinstance(said, bool):
-        spec |= {"frequency": float(said), "highest": spec.get("highest", MEANT * max([said, *highest]))}
+    given = start.get("frequency", model.get("frequency", sum(highest) / len(highest) if highest else None))
+    if isinstance(given, float | int) and not isinstance(given, bool):
+        spec |= {"frequency": float(given), "highest": spec.get("highest", MEANT * max([given, *highest]))}
     try:
         machine = structure(**spec, folder=path.parent)
     except (ParameterError, TypeError) as error:
@@ -95,20 +95,22 @@ def _structure(data: dict[str, Any], path: Path) -> tuple[Machine, dict[str, Any
     return machine, {**data, "model": rest}
 
 
-def _values(base: type[F], known: Mapping[str, float], data: dict[str, Any]) -> tuple[F, dict[str, float]]:
+def _values(
+    base: type[F], parameters: Mapping[str, float], data: dict[str, Any]
+) -> tuple[F, dict[str, float]]:
     """Check the sections of a study; return them and the values of the parameters.
 
     Raises
     ------
     StudyError
     """
-    if "name" in known:
-        said = _section(data, "model")["name"]
+    if "name" in parameters:
+        given = _section(data, "model")["name"]
         raise StudyError(
-            f"[model] name = {said!r} is the file; its parameter 'name' needs another name, such as 'name_', that a study can give."
+            f"[model] name = {given!r} is the file; its parameter 'name' needs another name, such as 'name_', that a study can give."
         )
     kinds: dict[str, Any] = {
-        name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
+        name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in parameters.items()
     }
     settings: dict[str, Any] = {name: (kind | None, None) for name, kind in kinds.items()}
     settings["name"] = (Annotated[str, Field(pattern="|".join([r"\.py", STRUCTURE, *PAGES]))], ...)
@@ -117,9 +119,9 @@ def _values(base: type[F], known: Mapping[str, float], data: dict[str, Any]) -> 
 
 
 def _flow(data: dict[str, Any], path: Path, flow: FlowProblem) -> Study:
-    known = dict(flow.values.values)
-    file, values = _values(FlowSections, known, data)
-    parameters = {**known, **values}
+    defaults = dict(flow.values.values)
+    file, values = _values(FlowSections, defaults, data)
+    parameters = {**defaults, **values}
     wrong = wrong_intervals(file, parameters[file.continue_.parameter], lambda name, value: "")
     state, box, size = file.start.state, file.start.box, len(flow.x0)
     if state is not None and len(state) != size:
@@ -146,30 +148,30 @@ def _counted(data: dict[str, Any], machine: Machine) -> dict[str, Any]:
     from .physical_study import in_numbers
 
     units = {name: unit for name, unit in machine.units.items() if name in machine.parameters}
-    said = data.get("units")
-    if said is not None and said != "si":
-        raise StudyError(f'units = {said!r} is unknown; use "si", or leave it out.')
-    if said is not None and not machine.units:
+    given = data.get("units")
+    if given is not None and given != "si":
+        raise StudyError(f'units = {given!r} is unknown; use "si", or leave it out.')
+    if given is not None and not machine.units:
         raise StudyError(
-            f"units = {said!r}: the machine {machine.name!r} gives no units; leave the line out, or declare it with Machine(..., units=)."
+            f"units = {given!r}: the machine {machine.name!r} gives no units; leave the line out, or declare it with Machine(..., units=)."
         )
     if not units:
         return data
 
-    def number(name: str | None, said: object, place: str, i: int | None = None) -> object:
-        if isinstance(said, list):
-            return [number(name, one, place) for one in said]
-        if isinstance(said, dict):  # of [survey] vary
-            return {key: number(name, one, place) for key, one in said.items()}
-        if not (isinstance(said, str) and name in units):
-            return said
+    def number(name: str | None, given: object, place: str, i: int | None = None) -> object:
+        if isinstance(given, list):
+            return [number(name, one, place) for one in given]
+        if isinstance(given, dict):  # of [survey] vary
+            return {key: number(name, one, place) for key, one in given.items()}
+        if not (isinstance(given, str) and name in units):
+            return given
         try:
-            return counted(name, said, units[name])
+            return counted(name, given, units[name])
         except QuantityError as error:
             raise StudyError(f"{place}{'' if i is None else ': '}{error}.") from None
 
     def numbers(section: dict[str, Any], place: str) -> dict[str, Any]:
-        return {name: number(name, said, place) for name, said in section.items()}
+        return {name: number(name, given, place) for name, given in section.items()}
 
     wrong: list[str] = []
     found = in_numbers(data, number, machine.units, wrong)
@@ -199,14 +201,14 @@ def _page(data: dict[str, Any], path: Path, machine: Machine) -> Study:
     over, (low, high) = file.continue_.parameter, file.continue_.within
     if over not in values and not low <= parameters[over] <= high:
         parameters[over] = 0.5 * (low + high)
-    if alone := refusal(over, machine.parameters[over]):
-        refuse([f"[model]{alone.removeprefix(':')}"])
+    if refused := refusal(over, machine.parameters[over]):
+        refuse([f"[model]{refused.removeprefix(':')}"])
     wrong = wrong_intervals(file, parameters[over], refusal)
-    known = (*machine.states, "phase")
+    coordinates = (*machine.states, "phase")
     wrong += [
-        f"[start] state has {key!r}; it may have {', '.join(known)}."
+        f"[start] state has {key!r}; it may have {', '.join(coordinates)}."
         for key in file.start.state or {}
-        if key not in known
+        if key not in coordinates
     ]
     if not wrong:
         try:
@@ -246,13 +248,13 @@ def own_code(study: Path, file: str, place: str) -> Path:
     return study.parent / name
 
 
-def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
+def load_kinds(study: Path, given: str) -> tuple[Sequence[Any], str]:
     """Run a Python file beside the study, and return the built-in kinds of special points with those of the file, and the file's digest.
 
     Parameters
     ----------
     study : Path
-    said : str
+    given : str
         File and name, from ``kinds = "file.py:name"`` in [continue]; the name is that of a :class:`contvines.Kind` or of a list of them.
 
     Raises
@@ -263,8 +265,8 @@ def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
     from ..bifurcation.kind import Kind
     from ..bifurcation.kinds import KINDS, checked
 
-    place = f"[continue] kinds = {said!r}"
-    file, _, name = said.rpartition(":")
+    place = f"[continue] kinds = {given!r}"
+    file, _, name = given.rpartition(":")
     path = own_code(study, file, place)
     if not (file and name and path.is_file()):
         raise ValueError(
@@ -275,8 +277,8 @@ def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
     found = getattr(module, name, None)
     own = [found] if isinstance(found, Kind) else list(found) if isinstance(found, list | tuple) else []
     if not own:
-        known = ", ".join(names_of(module, Kind)) or "none"
-        raise ValueError(f"{place}: {path} has no kind {name!r}; it has {known}")
+        kinds = ", ".join(names_of(module, Kind)) or "none"
+        raise ValueError(f"{place}: {path} has no kind {name!r}; it has {kinds}")
     try:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
         return checked([*(kind for kind in KINDS if kind not in own), *own]), digest

@@ -32,9 +32,9 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
     machine, wrong = None, []
 
-    def number(name: str | None, said: object, place: str, i: int) -> object:
+    def number(name: str | None, given: object, place: str, i: int) -> object:
         if machine is not None and name in machine.tables.quantities:
-            return number_of(machine.given_by(name), name, said, f"{place}[{i}]")
+            return number_of(machine.given_by(name), name, given, f"{place}[{i}]")
         return float(i)  # why there is no such quantity is told already
 
     if isinstance(model, dict) and isinstance(start, dict):
@@ -53,40 +53,40 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
 
 
 def _machine(
-    said: object, model: dict[str, Any], start: dict[str, Any], others: dict[str, Any]
+    units_given: object, model: dict[str, Any], start: dict[str, Any], others: dict[str, Any]
 ) -> tuple[Physical | None, list[str]]:
     """Return the machine of `[model]` and `[start]` (None if it cannot be made) and all errors.
 
     The quantity that `[continue]` varies is in the unit of its interval.
     """
-    if said != "si":
-        return None, [f'units = {said!r} is unknown; use "si", or leave it out.']
+    if units_given != "si":
+        return None, [f'units = {units_given!r} is unknown; use "si", or leave it out.']
     name = str(model.get("name"))
     try:
-        known = tables(model_class(name)).quantities
+        quantities = tables(model_class(name)).quantities
     except ValueError as error:
         return None, [f"[model] {error}."]
     wrong = [
-        f"[{section}] {key} = {value!r}: there is no such quantity{near_quantity(key, [*known, *extra])}; "
-        f"known are {', '.join([*extra, *known])}."
+        f"[{section}] {key} = {value!r}: there is no such quantity{near_quantity(key, [*quantities, *extra])}; "
+        f"known are {', '.join([*extra, *quantities])}."
         for section, values, extra in (("model", model, OWN), ("start", start, SAID))
         for key, value in values.items()
-        if key not in known and key not in extra
+        if key not in quantities and key not in extra
     ]
     varied = {section: _parameter(others.get(section)) for section in ("continue", "chart")}
     wrong += [
-        f"[{section}] parameter = {over!r}: the model {name!r} has no such quantity{near_quantity(over, known)}; it has {', '.join(known)}."
+        f"[{section}] parameter = {over!r}: the model {name!r} has no such quantity{near_quantity(over, quantities)}; it has {', '.join(quantities)}."
         for section, over in varied.items()
-        if over is not None and over not in known
+        if over is not None and over not in quantities
     ]
-    over = known.get(varied["continue"] or "")
-    said_already = {known[key].choice for key in (*model, *start) if key in known}
+    over = quantities.get(varied["continue"] or "")
+    said_already = {quantities[key].choice for key in (*model, *start) if key in quantities}
     if over is not None and "word" not in start and over.choice not in said_already:
         start = {**start, over.name: _middle(over, others["continue"])}
     # quantities in [start] replace those of the same choice in [model]
-    groups = {known[key].choice for key in start if key in known}
-    places = {key: "model" for key in model if key in known and known[key].choice not in groups}
-    places |= {key: "start" for key in start if key in known}
+    groups = {quantities[key].choice for key in start if key in quantities}
+    places = {key: "model" for key in model if key in quantities and quantities[key].choice not in groups}
+    places |= {key: "start" for key in start if key in quantities}
     given = {key: (model if section == "model" else start)[key] for key, section in places.items()}
     given |= {key: model[key] for key in ("contact_time",) if key in model}
     try:
@@ -102,7 +102,7 @@ def _parameter(section: object) -> str | None:
     return name if isinstance(name, str) else None
 
 
-def _middle(quantity: Quantity, go: dict[str, Any]) -> object:
+def _middle(quantity: Quantity, continued: dict[str, Any]) -> object:
     """Return the middle of the interval of `[continue]` as a quantity in the unit of its lower end; an invalid interval is returned unchanged.
 
     Raises
@@ -110,7 +110,7 @@ def _middle(quantity: Quantity, go: dict[str, Any]) -> object:
     QuantityError
         If an end is no quantity of this kind.
     """
-    within = go.get("within")
+    within = continued.get("within")
     if not isinstance(within, list) or len(within) != 2:
         return within
     (low, unit), (high, other) = (units.read(quantity, end) for end in within)
@@ -140,32 +140,32 @@ def in_numbers(
         Messages of errors are added to it. Lists with errors are replaced by ascending numbers, so that each error is told once.
     """
 
-    def bound(measure: str | None, said: object, place: str, i: int) -> object:
-        if units_of is None or not isinstance(said, str):
-            return float(i) if units_of is None else said
+    def bound(measure: str | None, given: object, place: str, i: int) -> object:
+        if units_of is None or not isinstance(given, str):
+            return float(i) if units_of is None else given
         with refused(place):
-            return units.counted(str(measure), said, units_of.get(str(measure), ""))
+            return units.counted(str(measure), given, units_of.get(str(measure), ""))
 
     def each(read: Any, name: str | None, values: object, place: str) -> object:
         if not isinstance(values, list):
             return values
         found, refusals = [], []
-        for i, said in enumerate(values):
+        for i, given in enumerate(values):
             try:
-                found.append(read(name, said, place, i))
+                found.append(read(name, given, place, i))
             except ValueError as error:
                 refusals.append(str(error))
         wrong.extend(refusals)
         return [*map(float, range(len(values)))] if refusals else found
 
-    usual = _parameter(data.get("continue"))
+    default = _parameter(data.get("continue"))
     found = dict(data)
     for section in ("continue", "sweep", "atlas", "chart"):
         if isinstance(values := data.get(section), dict):
-            name = _parameter(values) or usual
+            name = _parameter(values) or default
             lists = {key: values[key] for key in ("within", "values") if key in values}
             found[section] = values | {
-                key: each(number, name, said, f"[{section}] {key}") for key, said in lists.items()
+                key: each(number, name, given, f"[{section}] {key}") for key, given in lists.items()
             }
             if isinstance(bounds := values.get("bounds"), dict):
                 found[section]["bounds"] = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..shared.numbers import figures
 from .frame import present
-from .measured import Rows, Scales, Series, Told, written
+from .measured import Measured, Rows, Scales, Series, written
 from .options import JsonOption, PlotOption, SizeOption, argument, option
 from .study_data import Sort, Study
 
@@ -65,34 +65,34 @@ def random(
     present(found, json_, plot, size)
 
 
-def _computed(study: Study, seed: int | None) -> Told:
+def _computed(study: Study, seed: int | None) -> Measured:
     from orbits.design.random_excitation import Density, random_base, random_page
 
-    said = study.random
-    if said is None:
+    section = study.random
+    if section is None:
         raise ValueError(f"{study.path}: the section [random] is missing; for example {EXAMPLE}.")
     model, params = study.model, study.model.vector(study.loose)
     page = study.sort is Sort.PAGE
-    if page != (said.parameter is not None):
-        way = (
+    if page != (section.parameter is not None):
+        advice = (
             f"name the parameter that is random, one of {', '.join(model.parameter_names)}"
             if page
             else "leave it out: the base is what moves"
         )
-        raise ValueError(f"{study.path}: [random] parameter: {way}.")
-    frequencies, values = np.array(said.psd, dtype=float).T
+        raise ValueError(f"{study.path}: [random] parameter: {advice}.")
+    frequencies, values = np.array(section.psd, dtype=float).T
     options: dict[str, Any] = {
-        "periods": said.periods,
-        "records": said.records,
-        "seed": said.seed if seed is None else seed,
+        "periods": section.periods,
+        "records": section.records,
+        "seed": section.seed if seed is None else seed,
     }
-    shown, scales = model.units, Scales(model, params)
-    turn = 2.0 * math.pi if shown else 1.0  # densities are per hertz if the study has units
+    units, scales = model.units, Scales(model, params)
+    turn = 2.0 * math.pi if units else 1.0  # densities are per hertz if the study has units
     rate = 1.0 if page else 1.0 / scales.factor("time")
     try:
-        if said.parameter is not None:
+        if section.parameter is not None:
             psd = Density(frequencies * turn, values / turn)
-            response = random_page(model, params, said.parameter, psd, start=study.state, **options)
+            response = random_page(model, params, section.parameter, psd, start=study.state, **options)
         else:
             acceleration = scales.metre * rate**2
             psd = Density(frequencies * turn / rate, values * rate / turn / acceleration**2)
@@ -102,24 +102,24 @@ def _computed(study: Study, seed: int | None) -> Told:
 
     def length(name: str) -> tuple[float, str]:
         """Return the factor from a dimensionless response to the study's unit, and the unit's name."""
-        return (1.0, shown.get(name, "")) if page else (scales.factor("length"), scales.unit("length"))
+        return (1.0, units.get(name, "")) if page else (scales.factor("length"), scales.unit("length"))
 
     rows: Rows = []
     errors: dict[str, float] = {}
     for name, (value, error) in response.numbers.items():
-        sort, _, what = name.partition("_")
+        sort, _, quantity = name.partition("_")
         if name in OWN:
             kind, words = "" if page else KINDS_OF_OWN[name], OWN[name]
-            factor, unit = scales.factor(kind), scales.unit(kind) or ("Hz" if page and shown else "")
+            factor, unit = scales.factor(kind), scales.unit(kind) or ("Hz" if page and units else "")
         else:
-            factor, unit = length(what)
-            words = f"{KINDS[sort]} of {what}" if page else f"{KINDS[sort]}: {WORDS[what]}"
+            factor, unit = length(quantity)
+            words = f"{KINDS[sort]} of {quantity}" if page else f"{KINDS[sort]}: {WORDS[quantity]}"
         rows.append((name, factor * value, unit, words))
         errors[name] = factor * error
-    series: Series = [("frequency", "Hz" if shown else "", response.omega * rate / turn)]
+    series: Series = [("frequency", "Hz" if units else "", response.omega * rate / turn)]
     for name, values in response.densities.items():
         factor, unit = length(name)
         series.append((name, f"{unit}^2/Hz" if unit else "", values * factor**2 * turn / rate))
-    seconds = f"{figures(response.duration / rate)} {'s' if shown else 'units of time'}"
+    seconds = f"{figures(response.duration / rate)} {'s' if units else 'units of time'}"
     title = f"{study.path.name} under random excitation: {response.records} records of {seconds}"
-    return Told(title, rows, series, errors=errors)
+    return Measured(title, rows, series, errors=errors)

@@ -235,10 +235,10 @@ def _numbers(model: Physical, name: str, given: object, place: str) -> object:
     """Convert quantities in a specification of `vary` to numbers in the machine's unit."""
     from .physical_study import number_of
 
-    def read(values: object, where: str, spread: int | None = None) -> object:
+    def read(values: object, path: str, spread: int | None = None) -> object:
         if not isinstance(values, list):
             return values
-        return [number_of(model, name, value, f"{where}[{i}]", i == spread) for i, value in enumerate(values)]
+        return [number_of(model, name, value, f"{path}[{i}]", i == spread) for i, value in enumerate(values)]
 
     if not isinstance(given, dict):
         return read(given, place)

@@ -13,7 +13,7 @@ from orbits.machines.physical.units import counted
 
 from ..shared.numbers import figures
 from .frame import present
-from .measured import Rows, Scales, Series, Told, loads_rows, measured, written
+from .measured import Measured, Rows, Scales, Series, loads_rows, measured, written
 from .options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
 from .study_data import Sort, Study, refused
 
@@ -119,7 +119,7 @@ def transient(
     present(found, json_, plot, size)
 
 
-def _released(study: Study, text: str, within: str | None) -> Told:
+def _released(study: Study, text: str, within: str | None) -> Measured:
     from orbits.design.transients import free_decay, taken_share
 
     model, params = study.model, study.model.vector(study.loose)
@@ -151,10 +151,10 @@ def _released(study: Study, text: str, within: str | None) -> Told:
         ("energy", "", decay.energy),
         ("bare_energy", "", decay.bare),
     ]
-    return Told(f"Free decay of {study.path.name} from {text}", scales.rows(rows), scales.columns(series))
+    return Measured(f"Free decay of {study.path.name} from {text}", scales.rows(rows), scales.columns(series))
 
 
-def _started(study: Study, begin: str | None, over: str | None) -> Told:
+def _started(study: Study, begin: str | None, over: str | None) -> Measured:
     from orbits.design.transients import start_up
 
     model, params = study.model, study.model.vector(study.loose)
@@ -186,7 +186,7 @@ def _started(study: Study, begin: str | None, over: str | None) -> Told:
     return _motion(f"Start-up of {study.path.name} from rest{rising}", scales, rows, motion)
 
 
-def _recorded(study: Study, path: Path, tail: str | None) -> Told:
+def _recorded(study: Study, path: Path, tail: str | None) -> Measured:
     from orbits.design.record import recorded
 
     model, params = study.model, study.model.vector(study.loose)
@@ -236,7 +236,7 @@ def _share(motion: StartUp | Response) -> tuple[str, float, str, str]:
     return "absorber_share", motion.absorber_share, "", words
 
 
-def _motion(title: str, scales: Scales, rows: Rows, motion: StartUp | Response) -> Told:
+def _motion(title: str, scales: Scales, rows: Rows, motion: StartUp | Response) -> Measured:
     """Convert a simulated motion with and without the absorber to the study's units."""
     series: Series = [
         ("time", "time", motion.times),
@@ -244,7 +244,7 @@ def _motion(title: str, scales: Scales, rows: Rows, motion: StartUp | Response) 
         ("relative", "length", motion.relative),
         ("bare_oscillator", "length", motion.bare),
     ]
-    return Told(title, rows, scales.columns(series), motion.impact_times * scales.factor("time"))
+    return Measured(title, rows, scales.columns(series), motion.impact_times * scales.factor("time"))
 
 
 def _run_up(study: Study, begin: str | None, over: str | None, second: str) -> tuple[float, float] | None:
@@ -267,7 +267,7 @@ def _run_up(study: Study, begin: str | None, over: str | None, second: str) -> t
 
 def of_page(
     study: Study, release: str | None, begin: str | None, over: str | None, within: str | None
-) -> Told:
+) -> Measured:
     """Compute a transient of a declared machine: its states, its impacts, and the energy that impacts and friction dissipate."""
     from orbits.design.page_transients import page_transient
     from orbits.machines.page.si import CONTACT
@@ -310,7 +310,7 @@ def of_page(
     series += [(name, units.get(name, ""), values) for name, values in motion.states.items()]
     series += [] if motion.energy is None else [("energy", units.get("impact_loss", ""), motion.energy)]
     origin = f"from {release}" if release else "from its start" if start else "from rest"
-    return Told(f"Transient of {study.path.name} {origin}", rows, series, motion.impact_times, drawn=2)
+    return Measured(f"Transient of {study.path.name} {origin}", rows, series, motion.impact_times, drawn=2)
 
 
 def _states(study: Study, text: str) -> dict[str, float]:
