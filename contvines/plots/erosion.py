@@ -37,6 +37,7 @@ def plot_erosion(
         values = erosion.values
         beside = axes.twinx()
         beside.grid(False)
+        beside.spines.right.set_visible(True)
         beside.set_ylim(0.0, 1.0)
         beside.set_ylabel("share of starts")
         low, high = np.array([one.share_interval for one in erosion.entries]).T

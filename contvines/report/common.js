@@ -27,7 +27,7 @@ const element = (tag, text, attributes = {}) => {
 const ink = () => getComputedStyle(document.body).color;
 const layout = (more) => ({
   paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink(), size: 13 }, hovermode: "closest",
-  margin: { l: 62, r: 12, t: 12, b: 46 }, showlegend: false,
+  margin: { l: 62, r: 12, t: 12, b: 46 }, showlegend: false, modebar: { bgcolor: "rgba(0,0,0,0)", color: "#a0a0a0", activecolor: ink() },
   ...more,
 });
 // a title longer than a narrow screen goes on in a second line

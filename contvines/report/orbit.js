@@ -9,8 +9,13 @@ function show(scene) {
     const leftmost = portrait.x.every((x) => (portrait.reversed ? x <= e.x + 1e-6 : x >= e.x - 1e-6));
     return leftmost ? "middle right" : "middle left";
   };
+  // at an event there are two points of one time: a gap, and a dotted jump from one to the other; the last event is at both ends
+  const after = history.x.flatMap((time, i) => (i && time === history.x[i - 1] ? [i] : []));
+  const flights = (v) => v.flatMap((value, i) => (after.includes(i) ? [null, value] : [value]));
+  const jumps = (v) => [...after, 0].flatMap((i) => [v.at(i - 1), v[i], null]);
   Plotly.react("portrait", [
-    { x: portrait.x, y: portrait.y, mode: "lines", line: { color: tint, width: 1.8 }, hoverinfo: "skip" },
+    { x: flights(portrait.x), y: flights(portrait.y), mode: "lines", line: { color: tint, width: 1.8 }, hoverinfo: "skip" },
+    { x: jumps(portrait.x), y: jumps(portrait.y), mode: "lines", line: { color: tint, width: 1, dash: "dot" }, hoverinfo: "skip" },
     { x: events.map((e) => e.x), y: events.map((e) => e.y), mode: "markers+text", text: events.map((e) => e.event), textposition: events.map(inner),
       marker: { size: 8, color: tint, symbol: "circle-open" }, hoverinfo: "text" },
   ], layout({ shapes: walls, xaxis: axis(portrait.names[0], { showgrid: false, ...(portrait.reversed ? { autorange: "reversed" } : {}) }), yaxis: axis(portrait.names[1]) }), options);

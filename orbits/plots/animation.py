@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contvines.shared.animations import animated, check_animation, pictures
-from contvines.shared.figures import Style, new_figure, styled
+from contvines.shared.figures import Style, legend_below, new_figure, styled
 from contvines.shared.near_names import hinting
 from orbits.plots.portrait import history, phase, title
-from orbits.plots.shown import COLOURS, Shown, shown
+from orbits.plots.shown import Shown, shown
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -74,7 +74,7 @@ def animate(
         even = np.linspace(seen.clock[0], seen.clock[-1], frames, endpoint=False)
         move = _point(above, seen, even, orbit.real) if seen.animation is None else _stage(above, seen, even)
         history(below, seen, orbit.real)
-        below.legend(loc="best", fontsize="small", ncols=2)
+        legend_below(below, below.get_legend_handles_labels()[0], True)
         now = below.axvline(even[0], color="0.2", linewidth=1.0)
 
         def draw(frame: int) -> None:
@@ -101,11 +101,11 @@ def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
     axes.set_xlim(low - room, high + room)
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
+    axes.set_xlabel(seen.unit if "box" in stage else "positions")
     axes.axhline(0.3, color="0.8", linewidth=1.0)
     marks, lines = [], []
-    for j, (name, v) in enumerate(places.items()):
-        look = {"markersize": 12, "color": COLOURS[j % len(COLOURS)], "label": name}
-        marks += axes.plot([v[0]], [0.42], "o", **look)
+    for name, v in places.items():
+        marks += axes.plot([v[0]], [0.42], "o", markersize=12, color=seen.curves[name].colour, label=name)
     for edge in edges:
         lines += axes.plot([edge[0]] * 2, [0.3, 0.8], color=WALL, linewidth=5.0, solid_capstyle="butt")
     if len(places) > 1:

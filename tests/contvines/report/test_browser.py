@@ -165,7 +165,7 @@ def test_it_draws_and_a_click_on_a_row_jumps_to_the_point(opened):
     assert text(opened, "#command") == "contvines orbit x.vines LP1"
     assert text(opened, "#python") == 'cv.load("x.vines")["LP1"].orbit'
     assert "word LR" in text(opened, "#orbit-about")
-    assert opened.locator("#portrait .scatterlayer .trace").count() == 2
+    assert opened.locator("#portrait .scatterlayer .trace").count() == 3  # flights, jumps, events
     assert opened.locator("#history .scatterlayer .trace").count() == 4
     assert not opened.locator("#shares").is_visible()  # there are no attractors
 
@@ -216,7 +216,7 @@ def test_other_measures_can_be_chosen(opened):
 @of("chart")
 def test_a_chart_shows_the_motion_of_the_point_that_is_clicked(opened):
     assert "1 locus, 1 point of codimension two, 2 regions" in text(opened, "#about")
-    assert opened.locator("#portrait .scatterlayer .trace").count() == 2
+    assert opened.locator("#portrait .scatterlayer .trace").count() == 3
     line = trace_with(opened, "t.customdata && t.customdata[0][1] !== null && t.x.length > 2")
     assert "symmetry breaking" in named_and_clicked(opened, line, 2)
     opened.wait_for_function("document.getElementById('python').textContent.endsWith('.orbit(2)')")
