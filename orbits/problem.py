@@ -335,11 +335,12 @@ class OrbitProblem(Motions):
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
         special: Mapping[int, Any] | None = None,
+        bits: int | None = None,
     ):
         """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
         from orbits.proofs.subjects import of_branch
 
-        return of_branch(self, points, values, marks, within, special)
+        return of_branch(self, points, values, marks, within, special, bits)
 
     def describe(self) -> dict[str, Any]:
         """Return a JSON-able description, from which `rebuild` makes the problem again."""

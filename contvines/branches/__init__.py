@@ -347,7 +347,7 @@ class Branch:
         within : (float, float), optional
             Interval of the parameter; the whole branch by default.
         bits : int, optional
-            Not used: stretches are proved with a fixed precision.
+            Precision of the stretches.
         special : dict, optional
             The graph's special points by label; the proved stretches then extend to the points themselves.
 
@@ -361,7 +361,8 @@ class Branch:
                 f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
             )
         points = {i: special[label] for i, label in self.marks if special and label in special}
-        return self.problem.prove_branch(self.points, self.values, [i for i, _ in self.marks], within, points)
+        marks = [i for i, _ in self.marks]
+        return self.problem.prove_branch(self.points, self.values, marks, within, points, bits)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entry of this branch in the JSON of a graph."""

@@ -388,9 +388,12 @@ class Rows(row_journal.Rows[StoredRow]):
         return self
 
     def keep(self, row: StoredRow) -> None:
-        """Add a row and write it to both files."""
-        self._write(row.cells)
-        super().keep(row)
+        """Add a row and write it to both files, first to the journal, from which the other is written again."""
+        from ..long_work import HELD
+
+        with HELD:
+            super().keep(row)
+            self._write(row.cells)
 
     def _write(self, *lines: list[str]) -> None:
         csv.writer(self.table).writerows(lines)

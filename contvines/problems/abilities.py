@@ -238,6 +238,7 @@ class Provable(Protocol):
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
         special: Mapping[int, BorderPoint] | None = None,
+        bits: int | None = None,
     ) -> object: ...
 
 

@@ -13,7 +13,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
 from ..journal import Interrupted, unfinished
-from ..long_work import OnInterrupt, check_interrupt, counted
+from ..long_work import HELD, OnInterrupt, check_interrupt, counted
 from ..problems.abilities import notation_of
 from ..shared import files
 from ..shared.on_demand import needed
@@ -158,7 +158,8 @@ def survey(
         try:
             with closing(pools.worked(job, tasks, workers, cluster)) as worked:
                 for row in worked:
-                    rows.keep(row)
+                    with HELD:
+                        rows.keep(row)
                     if tell is not None:
                         tell(row)
         except KeyboardInterrupt:

@@ -147,6 +147,7 @@ def prove_piece(
     low: float,
     high: float,
     ends: tuple[Proof | None, Proof | None] = (None, None),
+    bits: int = BITS,
 ) -> Piece:
     """Cover an interval of the parameter with tiles whose orbits all have the same verdicts (real or virtual, stable or unstable).
 
@@ -163,11 +164,13 @@ def prove_piece(
         The interval, low < high.
     ends : (Proof or None, Proof or None)
         Proofs of the special points at which the piece begins and ends; with them the piece includes these points.
+    bits : int
+        Precision.
     """
     given = {name: decimal(value) for name, value in parameters.items() if name not in varying.numbers}
     check_symmetry(motif, given, varying)
-    with precision(BITS):
-        cover = _Cover(Family(motif, {name: ball(value) for name, value in given.items()}, varying))
+    with precision(bits):
+        cover = _Cover(Family(motif, {name: ball(value) for name, value in given.items()}, varying), bits)
         first, last = ((end and _chain(end, guess, 0.5 * (low + high))) for end in ends)
         obstacle = cover.run(guess, low, high, first, last)
     real, steady = cover.verdict or (None, None)
@@ -186,6 +189,7 @@ def prove_piece(
         real,
         steady,
         (obstacle,) if obstacle else (),
+        bits,
     )
 
 
@@ -207,8 +211,8 @@ def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> l
 class _Cover:
     """Construction of the cover: tiles one after another from the left to the right end, and orbits that lie in two neighbouring tiles."""
 
-    def __init__(self, family: Family) -> None:
-        self.family = family
+    def __init__(self, family: Family, bits: int) -> None:
+        self.family, self.bits = family, bits
         self.tiles: list[Tile] = []
         self.boxes: list[Entry] = []
         self.verdict: tuple[bool | None, bool | None] | None = None
@@ -266,7 +270,7 @@ class _Cover:
 
     def _orbit(self, value: str, start: Sequence[Sequence[float]] | np.ndarray) -> Box:
         nodes = as_balls(start)
-        return orbit_at(self.family, value, nodes, BITS)
+        return orbit_at(self.family, value, nodes, self.bits)
 
     def _next(
         self, at: str, box: Box, width: float, least: float, goal: str, last: list[Entry] | None
@@ -287,7 +291,7 @@ class _Cover:
         along = Along(family, None, ball(center))
         try:
             system = family.system(ball(center))
-            z, _ = refine(system, as_balls(nodes), [], BITS)
+            z, _ = refine(system, as_balls(nodes), [], self.bits)
             tile = lay(along, center, half, z, ball(center))
             if tile is None or not tile.holds(at, box):
                 return smaller

@@ -16,7 +16,7 @@ from orbits.proofs.checks import check_symmetry, motif_of
 from orbits.proofs.equations import Motif, Varying
 from orbits.proofs.flights import parameter_names
 from orbits.proofs.obstacles import ProofError
-from orbits.proofs.pieces import Pieces, prove_piece
+from orbits.proofs.pieces import BITS, Pieces, prove_piece
 from orbits.proofs.proof import Proof
 from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special, prove_stuck
 from orbits.settings import PROVING
@@ -146,6 +146,7 @@ def of_branch(
     marks: Sequence[int] = (),
     within: tuple[float, float] | None = None,
     special: Mapping[int, Special] | None = None,
+    bits: int | None = None,
 ) -> Pieces:
     """Prove a branch of an `OrbitProblem`, or its part within an interval of the parameter.
 
@@ -161,6 +162,8 @@ def of_branch(
     special : dict, optional
         Index -> special point (with `kind`, `u`, `value` and `margin_index`). A stretch includes a special point that can be proved with the
         word of the branch, and a plain end; at other special points, where verdicts change, a hundredth of the stretch is left out.
+    bits : int, optional
+        Precision of stretches, and the first one to try for special points.
 
     Raises
     ------
@@ -185,7 +188,7 @@ def of_branch(
 
     def point(place: int) -> Proof | None:
         if place not in proofs:
-            proofs[place] = _joinable(problem, motif, (special or {}).get(place))
+            proofs[place] = _joinable(problem, motif, (special or {}).get(place), bits)
         return proofs[place]
 
     def plain(place: int) -> bool:
@@ -218,18 +221,18 @@ def of_branch(
             return problem.expand(np.array(columns), p)[: len(motif)]
 
         between.append((first, last))
-        pieces.append(prove_piece(motif, guess, given, varying, low, high, (ends[0], ends[1])))
+        pieces.append(prove_piece(motif, guess, given, varying, low, high, (ends[0], ends[1]), bits or BITS))
     if not pieces:
         raise ProofError("the branch has no stretch between special points in this interval")
     return Pieces(tuple(pieces), tuple(between))
 
 
-def _joinable(problem: Motions, motif: Motif, found: Special | None) -> Proof | None:
+def _joinable(problem: Motions, motif: Motif, found: Special | None, bits: int | None) -> Proof | None:
     """Prove a special point with the word of the branch, so that a stretch can include it; None if this is not possible."""
     if found is None or found.kind in PLAIN or np.size(found.u) != problem.dimension:
         return None
     try:
-        proof = of_point(problem, found.kind, found.u, float(found.value), found.margin_index)
+        proof = of_point(problem, found.kind, found.u, float(found.value), found.margin_index, bits)
     except ProofError:
         return None
     wide = bool(proof.chain) and float(proof.chain[1]["half_width"]) > PROVING.narrow

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from orbits.machines.page.patterns import Guard
 
 TWO_PI = 2.0 * np.pi
-HALVINGS = 6  # bisections of the way to the top of a hop; also corrections of gap rates
+HALVINGS = 6  # bisections of the way to the top of a hop
+CORRECTIONS = 6  # corrections of the gap rates of walls that hold
 
 
 class Tools(NamedTuple):
@@ -254,7 +255,7 @@ class Stepper:
 
     def _rest(self, walls: list[int], near: float) -> None:
         """Remove the gap rates of walls that hold; each correction changes the other rates, so it is repeated."""
-        for _ in range(HALVINGS):
+        for _ in range(CORRECTIONS):
             moving = [wall for wall in walls if abs(self._gap_rate(wall)) > near]
             if not moving:
                 return

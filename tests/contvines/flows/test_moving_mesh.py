@@ -65,6 +65,7 @@ def test_the_curve_changes_as_it_would_where_the_mesh_stands_still(copies, pinne
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_oregonator_from_one_hopf_point_to_the_other():
     """Tyson's scaling (epsilon = 0.01, epsilon' = 1e-4, q = 8e-4), with canards at both ends, the upper one near the equilibrium, but not homoclinic.
 

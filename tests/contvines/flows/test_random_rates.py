@@ -5,10 +5,12 @@ import pytest
 
 import contvines as cv
 
+NOISE = np.random.default_rng(1)
+
 
 def noisy(x, p, *t):
     """Normal numbers beside the rates, others at each call."""
-    noise = 0.1 * np.random.default_rng().standard_normal()
+    noise = 0.1 * NOISE.standard_normal()
     return [p.a * x[0] - x[1] - x[0] ** 3 + noise, x[0] - x[1]]
 
 
