@@ -113,8 +113,8 @@ def plot_diagram(
         raise ValueError(f"labels = {labels!r}: give True, False or a list, for example [{labels!r}]")
     unknown = [] if isinstance(labels, bool) else [label for label in labels if label not in graph]
     if unknown:
-        known = ", ".join([*graph.branches, *graph.special])
-        raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {known}")
+        labels_of_graph = ", ".join([*graph.branches, *graph.special])
+        raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {labels_of_graph}")
     with drawing(axes, style, figsize) as (figure, axes, own):
         look = {"labels": labels, "ends": ends, "words": words, "color": color, "name": name}
         look["inset"] = own if inset is None else inset
@@ -147,7 +147,7 @@ def draw_diagram(
     picture.refine()  # changes of the axes' size by the layout below are too small to need another refinement
     if limits[0] is not None:
         frame(axes, *limits)  # again, with the points inserted between the stored ones
-    picture.seen()
+    picture.visible_points()
     place_legend(axes, picture.handles(), legend, own, remarks=picture.remarks)
     finish_layout(root(axes), own)
     picture.lay_out()
@@ -163,13 +163,13 @@ def _marked(graph: Graph, marks: bool | Sequence[str]) -> list[str] | None:
         return None if marks else []
     kinds = {**BY_NAME, **graph.own_kinds}
     by_label = {kind.label: name for name, kind in kinds.items()}
-    wanted = [marks] if isinstance(marks, str) else list(marks)
-    for name in wanted:
+    names = [marks] if isinstance(marks, str) else list(marks)
+    for name in names:
         if name not in kinds and name not in by_label:
             raise ValueError(
                 f"marks: there is no kind {name!r}{did_you_mean(name, [*kinds, *by_label])}; give names or labels, for example ['fold', 'SB']"
             )
-    return [by_label.get(name, name) for name in wanted]
+    return [by_label.get(name, name) for name in names]
 
 
 def frame(axes: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float] | None) -> None:
@@ -297,7 +297,7 @@ class Picture:
                 self._explain(9, "proved", linewidth=6.8, solid_capstyle="butt", **PROVED)
             self.spots.append((point.label, point.kind, px, py))
 
-    def seen(self) -> list[tuple[str, str, float, float]]:
+    def visible_points(self) -> list[tuple[str, str, float, float]]:
         """Return the special points within the limits, and add the meaning of their marks to the legend."""
         found = [spot for spot in self.spots if self._inside(*spot[2:])]
         for _, kind, _, _ in found:
@@ -351,7 +351,7 @@ class Picture:
             self.inset[1].remove()
             self.inset[0].axes.remove()
             self.inset = None
-        spots = np.array([spot[2:] for spot in self.seen()]).reshape(-1, 2)
+        spots = np.array([spot[2:] for spot in self.visible_points()]).reshape(-1, 2)
         region = crowded_region(self.axes, spots) if self.region is True else self.region
         made = add_inset(self.axes, region, 0.8 * self._text()) if region else None
         if not region or made is None:
@@ -369,7 +369,7 @@ class Picture:
         places = {kind: i for i, kind in enumerate(BY_NAME)}  # rank of their labels
         wanted = [
             Label(self._named(label), x, y, "black", places.get(kind, len(places)), chosen is not None)
-            for label, kind, x, y in self.seen()
+            for label, kind, x, y in self.visible_points()
             if chosen is None or label in chosen
         ]
         names = self._middles(chosen)

@@ -66,14 +66,14 @@ def animate(
     frames = pictures(seconds, rate)
     if path is not None:
         check_animation(path)
-    seen = shown(orbit, 4 * frames)
+    data = shown(orbit, 4 * frames)
     with styled(style):
         figure = new_figure(figsize)
         figure.suptitle(title(orbit).split("\n")[0], fontsize="medium")
         above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.6))
-        even = np.linspace(seen.clock[0], seen.clock[-1], frames, endpoint=False)
-        move = _point(above, seen, even, orbit.real) if seen.animation is None else _stage(above, seen, even)
-        history(below, seen, orbit.real)
+        even = np.linspace(data.clock[0], data.clock[-1], frames, endpoint=False)
+        move = _point(above, data, even, orbit.real) if data.animation is None else _stage(above, data, even)
+        history(below, data, orbit.real)
         legend_below(below, below.get_legend_handles_labels()[0], True)
         now = below.axvline(even[0], color="0.2", linewidth=1.0)
 
@@ -84,15 +84,15 @@ def animate(
         return animated(figure, draw, path, seconds, rate)
 
 
-def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
+def _stage(axes: Axes, data: Shown, even: np.ndarray) -> Callable[[int], None]:
     """Draw bodies and walls; return a function that moves them to a frame."""
-    stage = seen.animation or {}
+    stage = data.animation or {}
     if "box" in stage:  # samples are evenly spaced over the period
         bodies, walls = {"absorber": stage["body"]}, [stage["box"] - wall for wall in stage["walls"]]
         given = np.linspace(even[0], 2.0 * even[-1] - even[-2], len(stage["box"]))
     else:
         bodies, walls = stage["bodies"], [wall["at"] for wall in stage["walls"]]
-        given = seen.clock
+        given = data.clock
     places = {name: np.interp(even, given, v) for name, v in bodies.items()}
     edges = [np.interp(even, given, wall) for wall in walls]
     everything = np.concatenate([*places.values(), *edges])
@@ -101,11 +101,11 @@ def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
     axes.set_xlim(low - room, high + room)
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
-    axes.set_xlabel(seen.unit if "box" in stage else "positions")
+    axes.set_xlabel(data.unit if "box" in stage else "positions")
     axes.axhline(0.3, color="0.8", linewidth=1.0)
     marks, lines = [], []
     for name, v in places.items():
-        marks += axes.plot([v[0]], [0.42], "o", markersize=12, color=seen.curves[name].colour, label=name)
+        marks += axes.plot([v[0]], [0.42], "o", markersize=12, color=data.curves[name].colour, label=name)
     for edge in edges:
         lines += axes.plot([edge[0]] * 2, [0.3, 0.8], color=WALL, linewidth=5.0, solid_capstyle="butt")
     if len(places) > 1:
@@ -120,10 +120,10 @@ def _stage(axes: Axes, seen: Shown, even: np.ndarray) -> Callable[[int], None]:
     return move
 
 
-def _point(axes: Axes, seen: Shown, even: np.ndarray, real: bool) -> Callable[[int], None]:
+def _point(axes: Axes, data: Shown, even: np.ndarray, real: bool) -> Callable[[int], None]:
     """Draw a point on the phase portrait; return a function that moves it to a frame."""
-    phase(axes, seen, real)
-    across, up = (np.interp(even, seen.clock, values) for values in (seen.x, seen.y))
+    phase(axes, data, real)
+    across, up = (np.interp(even, data.clock, values) for values in (data.x, data.y))
     (mark,) = axes.plot([across[0]], [up[0]], "o", color="0.1", zorder=5)
 
     def move(frame: int) -> None:

@@ -82,15 +82,15 @@ def portrait(
     arranged: dict[str, Any] = {"mosaic": "a"}
     if which == "both":
         arranged = {"mosaic": "a;b"} if size[0] < NARROW else {"mosaic": "ab", "width_ratios": (1.0, 1.5)}
-    seen = shown(orbit, points)
+    data = shown(orbit, points)
     with panels(axes, (1, 2), "an orbit is drawn on", size, style, arranged) as (figure, drawn):
         if heading and axes is None:
             text = title(orbit)
             figure.suptitle(text.split("\n")[0] if small else text, fontsize="medium", wrap=True)
         if which != "history":
-            phase(drawn[0], seen, orbit.real)
+            phase(drawn[0], data, orbit.real)
         if which != "phase":
-            history(drawn[-1], seen, orbit.real)
+            history(drawn[-1], data, orbit.real)
             handles = [handle for panel in drawn for handle in panel.get_legend_handles_labels()[0]]
             if isinstance(legend, str) and legend != "below":
                 chosen: dict[str, Any] = {"handles": handles, "loc": legend, "fontsize": "small"}
@@ -115,66 +115,66 @@ def title(orbit: Orbit) -> str:
     parameters = quantities(orbit)
     # dimensionless numbers are shown by their symbols, physical quantities by their names
     plain = set(parameters) == set(orbit.parameters)
-    here = ", ".join(
+    values = ", ".join(
         f"{sign(name) if plain else name.replace('_', ' ')} = {value}"
         for name, value in parameters.items()
         if (name, value) != ("excitation", "1")
     )
-    told = orbit.spelling
+    spelling = orbit.spelling
     if not len(orbit.word):
-        return f"{'no event' if orbit.word.modes else 'stuck, the absorber rides with the cavity'}, {state}\n{here}"
+        return f"{'no event' if orbit.word.modes else 'stuck, the absorber rides with the cavity'}, {state}\n{values}"
     many = "impact" if orbit.impacts == 1 else "impacts"
     periods = "forcing period" if orbit.periods == 1 else "forcing periods"
     kind = "symmetric" if orbit.symmetric else "asymmetric"
-    word = told if len(told) <= 60 else told[:40] + "..."
-    return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
+    word = spelling if len(spelling) <= 60 else spelling[:40] + "..."
+    return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{values}"
 
 
-def phase(axes: Axes, seen: Shown, real: bool) -> None:
+def phase(axes: Axes, data: Shown, real: bool) -> None:
     """Draw y against x; jumps at events are dashed, virtual orbits dotted."""
-    if seen.limits is not None:
-        ends, reach = seen.limits
+    if data.limits is not None:
+        ends, reach = data.limits
         axes.axhline(0.0, color="0.75", lw=0.7, zorder=0)
-        for wall, end in zip(seen.walls, ends):
+        for wall, end in zip(data.walls, ends):
             if (end - wall) * wall > 0.0:
                 axes.axvspan(wall, end, color=WALL, lw=0.0)
         axes.set(xlim=ends, ylim=reach)
-    for segment in np.unique(seen.segment):
-        here = np.flatnonzero(seen.segment == segment)
-        axes.plot(seen.x[here], seen.y[here], "-" if real else ":", color=LINE, lw=1.6, zorder=2)
-    if not seen.events and np.ptp(seen.x) == np.ptp(seen.y) == 0.0:
-        axes.plot(seen.x[:1], seen.y[:1], "o", color=LINE, zorder=2)
-    for i, event in enumerate(seen.events):
-        before = np.flatnonzero(seen.segment == (i - 1) % len(seen.events))[-1]
-        jump = [seen.x[before], event.x], [seen.y[before], event.y]
+    for segment in np.unique(data.segment):
+        here = np.flatnonzero(data.segment == segment)
+        axes.plot(data.x[here], data.y[here], "-" if real else ":", color=LINE, lw=1.6, zorder=2)
+    if not data.events and np.ptp(data.x) == np.ptp(data.y) == 0.0:
+        axes.plot(data.x[:1], data.y[:1], "o", color=LINE, zorder=2)
+    for i, event in enumerate(data.events):
+        before = np.flatnonzero(data.segment == (i - 1) % len(data.events))[-1]
+        jump = [data.x[before], event.x], [data.y[before], event.y]
         axes.plot(*jump, color=LINE, lw=0.8, ls=(0, (2, 2)))
     named: set[str] = set()
-    for event in seen.events:
+    for event in data.events:
         new = event.height is None and event.letter not in named
         named.add(event.letter)
-        axes.plot(event.x, event.y, event.mark, label=event.called if new else None, **MARKER)
-    axes.set(xlabel=seen.names[0], ylabel=seen.names[1])
+        axes.plot(event.x, event.y, event.mark, label=event.name if new else None, **MARKER)
+    axes.set(xlabel=data.names[0], ylabel=data.names[1])
 
 
-def history(axes: Axes, seen: Shown, real: bool) -> None:
+def history(axes: Axes, data: Shown, real: bool) -> None:
     """Draw all curves over time, with walls and events."""
-    for wall, edge in zip(seen.walls, seen.edges):  # position of the absorber at contact
-        axes.plot(seen.clock, edge, color=CAVITY, lw=1.0)
-        axes.fill_between(seen.clock, edge, edge - 0.25 * seen.half * np.sign(wall), color=WALL, lw=0.0)
-    for curve in seen.curves.values():
+    for wall, edge in zip(data.walls, data.edges):  # position of the absorber at contact
+        axes.plot(data.clock, edge, color=CAVITY, lw=1.0)
+        axes.fill_between(data.clock, edge, edge - 0.25 * data.half * np.sign(wall), color=WALL, lw=0.0)
+    for curve in data.curves.values():
         line = curve.dashes if real or curve.dashes != "-" else ":"
-        axes.plot(seen.clock, curve.values, line, color=curve.colour, lw=1.0 if line == "--" else 1.6, label=curve.label)  # fmt: skip
+        axes.plot(data.clock, curve.values, line, color=curve.colour, lw=1.0 if line == "--" else 1.6, label=curve.label)  # fmt: skip
     named: set[str] = set()
-    for event in seen.events:
+    for event in data.events:
         if event.height is not None:
-            label = event.called if event.letter not in named else None
+            label = event.name if event.letter not in named else None
             axes.plot(event.at, event.height, event.mark, label=label, **MARKER)
             named.add(event.letter)
             continue
         axes.axvline(event.at, color="#bdbdbd", lw=0.7, zorder=0)
         above = {"xycoords": ("data", "axes fraction"), "ha": "center", "va": "bottom", "fontsize": "small"}
         axes.annotate(event.letter, (event.at, 1.0), **above)
-    axes.set(xlabel=seen.time, ylabel=seen.unit, xlim=(seen.clock[0], seen.clock[-1]))
+    axes.set(xlabel=data.time, ylabel=data.unit, xlim=(data.clock[0], data.clock[-1]))
     axes.margins(y=0.02)
 
 

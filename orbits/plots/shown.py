@@ -38,7 +38,7 @@ class Happening(NamedTuple):
 
     letter: str
     mark: str
-    called: str
+    name: str
     at: float
     x: float
     y: float
@@ -99,8 +99,8 @@ def shown(orbit: Orbit, points: int) -> Shown:
 def _of_cavity(orbit: Orbit, model: Model, points: int) -> Shown:
     """Data for a built-in machine: relative velocity against relative position (left wall on the left), and both bodies over forcing periods."""
     params, table, motion = orbit.params, orbit.events, orbit.sample(points)
-    known = model.gauges(("w", "w_rate"), params)
-    (long, length), (fast, velocity) = (known.get(name, (1.0, "")) for name in ("w", "w_rate"))
+    gauges = model.gauges(("w", "w_rate"), params)
+    (long, length), (fast, velocity) = (gauges.get(name, (1.0, "")) for name in ("w", "w_rate"))
     w, rate = motion["w"] * long, motion["w_rate"] * fast
     cavity, absorber = motion["cavity"] * long, motion["absorber"] * long
     left, right = (long * float(wall) for wall in model.walls(params))
@@ -151,12 +151,12 @@ def _events(
     """Return the events with markers and names."""
     alphabet, sides = orbit.word.alphabet, {"L": " left", "R": " right"}
     marks = dict(zip(alphabet.letters, MARKS * 9))
-    called = {
+    names = {
         text: f"{NAMES[letter.kind]}{sides.get(text, '')}" if alphabet.alone is not None else f"after {text}"
         for text, letter in alphabet.letters.items()
     }
     return [
-        Happening(text, marks[text], called[text], float(t), float(a), float(b), h if h is None else float(h))
+        Happening(text, marks[text], names[text], float(t), float(a), float(b), h if h is None else float(h))
         for text, t, a, b, h in zip(orbit.word.events, at, x, y, heights)
     ]
 
@@ -262,22 +262,22 @@ def scene(orbit: Orbit, points: int = 120) -> dict[str, Any]:
         walls), ``animation`` (positions of cavity and absorber, evenly spaced in time; for a declared machine the result of
         `track`), ``events``.
     """
-    seen = shown(orbit, points)
+    data = shown(orbit, points)
     return {
         "portrait": {
-            "x": seen.x,
-            "y": seen.y,
-            "names": list(seen.names),
-            "walls": list(seen.walls),
-            "reversed": bool(seen.walls),
+            "x": data.x,
+            "y": data.y,
+            "names": list(data.names),
+            "walls": list(data.walls),
+            "reversed": bool(data.walls),
         },
         "history": {
-            "x": seen.clock,
-            "name": seen.time,
-            "unit": seen.unit,
-            "curves": {name: curve.values for name, curve in seen.curves.items()},
-            "walls": list(seen.edges),
+            "x": data.clock,
+            "name": data.time,
+            "unit": data.unit,
+            "curves": {name: curve.values for name, curve in data.curves.items()},
+            "walls": list(data.edges),
         },
-        "animation": seen.animation,
-        "events": [{"event": e.letter, "at": e.at, "x": e.x, "y": e.y} for e in seen.events],
+        "animation": data.animation,
+        "events": [{"event": e.letter, "at": e.at, "x": e.x, "y": e.y} for e in data.events],
     }
