@@ -82,9 +82,10 @@ def locus(
     refuse_detached(graph, label)
     ends, kinds = interval("--within", within, over, graph.units), None
     if graph.special[label].kind in graph.own_kinds:  # its condition is a function of the study's
-        from .study import kept_kinds
+        from .study import kept_study, source_of
 
-        kinds = kept_kinds(file, trust)
+        source = source_of(file)
+        kinds = kept_study(file, source, trust)[0].all_kinds if source else None
     with working("nothing new is kept; run the same command again", quiet) as progress:
         found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress, kinds=kinds)
     with held(target, quiet, fresh):

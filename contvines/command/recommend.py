@@ -134,9 +134,10 @@ def kept(place: Path) -> dict[str, Any]:
 def _target(text: str, study: Study) -> float:
     from orbits.flows import flow_of
 
+    from .compose import machine
     from .options import amount
 
-    model = study.model
+    model = machine(study)
     value = amount("--target", text, flow_of(model).default_measure(model), model.units)
     if value <= 0.0:
         raise ValueError(f"--target {text}: give a response above 0.")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -198,18 +198,6 @@ def kept_study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str
             f"{file}: its study runs the code of {code!r} beside {place}; --trust allows it, for a file whose maker you trust."
         )
     return study_of(source["text"], place), source
-
-
-def kept_kinds(file: Path, trust: bool) -> Sequence[Any] | None:
-    """Return the kinds of special points of the study stored in a file; None if it has no study with user-defined kinds.
-
-    Raises
-    ------
-    ValueError
-        As `kept_study`.
-    """
-    source = source_of(file)
-    return kept_study(file, source, trust)[0].all_kinds if source else None
 
 
 def source_of(file: Path) -> dict[str, Any] | None:

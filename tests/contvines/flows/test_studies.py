@@ -98,8 +98,9 @@ def test_a_parameter_that_is_called_name_is_refused(study):
 
 
 def test_commands_for_machines_say_so(study, run):
-    status, _, err = run("sweep", "study.toml")
-    assert status and "needs a machine" in " ".join(err.split())
+    for line in ("sweep study.toml", "recommend study.toml --target 3"):
+        status, _, err = run(line)
+        assert status and "needs a machine" in err
 
 
 def test_a_chart_of_a_section(study, run):
