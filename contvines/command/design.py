@@ -61,7 +61,7 @@ def machine(
             f"{study.path}: slope = {slope:g} rad: design figures are closed forms of level cavities; use slope = 0, and contvines survey "
             "or transient for the inclined one."
         )
-    asked = (("cavity", cavity, "m", HALF_WIDTH), ("natural-frequency", natural_frequency, "Hz", 7.666))
+    asked = (("half-width", cavity, "m", HALF_WIDTH), ("natural-frequency", natural_frequency, "Hz", 7.666))
     for name, value, unit, example in asked:
         if value is not None and physical:
             raise StudyError(f"--{name} = {value!r}: the study says it already; leave --{name} out.")
@@ -79,7 +79,7 @@ def machine(
     elif gravity != 0:
         if cavity is not None and natural_frequency is not None:
             raise StudyError(
-                f"--cavity and --natural-frequency were both given, but [model] gravity = {gravity!r} "
+                f"--half-width and --natural-frequency were both given, but [model] gravity = {gravity!r} "
                 "already ties one to the other; give one of them."
             )
         assumed["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
@@ -101,7 +101,7 @@ def machine(
         except ValueError as error:
             raise StudyError(f"{study.path}: [model] {error}") from None
     if cavity is None or natural_frequency is None:
-        raise StudyError("[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency.")
+        raise StudyError("[model] gravity = 0 fixes no scale; give both --half-width and --natural-frequency.")
     return Design(half_width=cavity, natural_frequency=natural_frequency, **fields), assumed
 
 

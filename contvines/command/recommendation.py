@@ -37,6 +37,7 @@ LOADS = {
     "impact_speed": ("fastest impact", "of periodic and modulated motions"),
     "approach_speed": ("fastest impact", "of periodic motions"),
     "impulse": ("impulse of an impact", "largest; periodic motions"),
+    "peak_force": ("peak impact force", "half a sine over contact_time; periodic motions"),
     "mean_force": ("mean impact force", "over a period"),
     "impact_rate": ("impacts per second", "noise: how often"),
     "impact_energy": ("energy of an impact", "noise: how hard"),

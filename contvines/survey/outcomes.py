@@ -146,7 +146,8 @@ def unknown(found: Findings) -> str:
     kinds = dict.fromkeys(motion.kind for motion in found.unbranched)
     for kind in kinds:
         values = sorted({motion.value for motion in found.unbranched if motion.kind == kind})
-        more = f" and {len(values) - 1} more values" if len(values) > 1 else ""
+        count = len(values) - 1
+        more = f" and {count} more value{'s' * (count > 1)}" if count else ""
         reasons.append(
             f"a motion without a branch ({kind}) is met at {name} = {number(values[0])} {unit}".rstrip()
             + more

@@ -287,6 +287,10 @@ def _limits(
             low, high = sorted(_possible(model, name, value, times * value) for times in (0.2, 5.0))
         else:
             raise ParameterError(f"{name} = 0 is no guess; give another one, or limits of the estimate")
+        if not low <= value <= high:
+            raise ParameterError(
+                f"{name} = {value:g}, where the search begins, lies outside the limits {low:g} and {high:g}"
+            )
         found[name] = (low, high)
     return found
 
@@ -377,7 +381,7 @@ def fit(
     Raises
     ------
     ParameterError
-        If the guess lies outside the limits, there are no more data than parameters, or the data do not depend on one of the parameters.
+        If there are no more data than parameters, or the data do not depend on one of the parameters.
     """
     from scipy.optimize import least_squares
     from scipy.stats import t
@@ -385,8 +389,6 @@ def fit(
     names = list(guess)
     start = np.array([float(guess[name]) for name in names])
     low, high = (np.array([limits[name][k] for name in names], dtype=float) for k in (0, 1))
-    if np.any(start < low) or np.any(start > high):
-        raise ParameterError("the guess leaves the limits: begin inside them")
     if not 0.0 < confidence < 1.0:
         raise ParameterError(f"confidence = {confidence!r}: give a number between 0 and 1, for example 0.95")
     span = high - low

@@ -83,7 +83,7 @@ class Stepper:
 
     # ------------------------------------------------------------------ beginning
     def renew(self, params: np.ndarray) -> None:
-        """Continue with other parameters; friction that sticks may begin to slide.
+        """Continue with other parameters; friction that sticks may begin to slide, a wall that holds may let go.
 
         Gaps, switch surfaces and velocities of contacts must not depend on the parameters that changed.
         """
@@ -91,6 +91,8 @@ class Stepper:
         self._numbers.clear()
         if any(self.modes[j] == STUCK for j in self._frictions):
             self.start(self.state, self.base + self.clock)
+        elif self._holds:
+            self._last = len(self.modes)
 
     def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
         """Begin at a state; the modes follow from it if they are not given.
@@ -182,6 +184,11 @@ class Stepper:
         """Move on to a clock without looking for events."""
         self._tools.watch.move(self.state, self.clock, until, self.numbers)
         self.clock = until
+
+    @property
+    def _holds(self) -> bool:
+        """Whether a wall holds a body."""
+        return any(self.modes[w] == HELD for w in self._touched)
 
     def _changed_mode(self, contact: int, mode: int) -> tuple[int, ...]:
         changed = list(self.modes)
@@ -342,15 +349,15 @@ class Stepper:
             event = self._happened(guard)
             if event is not None:
                 self.count += 1
-                self._last = event[0] if self._frictions else -1
+                self._last = event[0] if self._frictions or self._holds else -1
                 self._rebase()
                 return event
 
     def _simultaneous(self) -> tuple[int, int, int] | None:
         """Return an event at the same instant as the last one, or None.
 
-        Equal bodies begin to slip, or come to rest, at the same instant, and an event may add a force that another friction cannot hold. Such
-        events are found here because a guard that begins at zero or below has no zero crossing.
+        Equal bodies begin to slip, or come to rest, at the same instant, and an event may add a force that another friction cannot hold, or
+        that pulls a body from a wall that holds it. Such events are found here because a guard that begins at zero or below has no zero crossing.
         """
         guard = next((guard for guard in self._vanishing() if guard.contact != self._last), None)
         self._last = -1 if guard is None else guard.contact
