@@ -101,7 +101,9 @@ def machine(
         except ValueError as error:
             raise StudyError(f"{study.path}: [model] {error}") from None
     if cavity is None or natural_frequency is None:
-        raise StudyError("[model] gravity = 0 fixes no scale; give both --half-width and --natural-frequency.")
+        raise StudyError(
+            "[model] gravity = 0 fixes no scale; give both --half-width and --natural-frequency."
+        )
     return Design(half_width=cavity, natural_frequency=natural_frequency, **fields), assumed
 
 

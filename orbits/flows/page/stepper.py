@@ -92,7 +92,7 @@ class Stepper:
         if any(self.modes[j] == STUCK for j in self._frictions):
             self.start(self.state, self.base + self.clock)
         elif self._holds:
-            self._last = len(self.modes)
+            self._last = len(self.modes)  # no contact: any guard may be violated
 
     def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
         """Begin at a state; the modes follow from it if they are not given.

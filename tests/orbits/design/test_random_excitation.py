@@ -71,17 +71,19 @@ def test_before_an_elastic_wall_the_density_is_exponential_in_the_energy():
 
 
 @pytest.mark.parametrize(
-    ("psd", "options", "says"),
+    ("frequencies", "densities", "slope", "options", "says"),
     [
-        (([1.0], [1.0]), {}, "two rows or more"),
-        (([2.0, 1.0], [1.0, 1.0]), {}, "ascending"),
-        (([1.0, 2.0], [0.0, 0.0]), {}, "one is above 0"),
-        (([1.0, 2.0], [1.0, 1.0]), {"periods": 1e9}, "instants"),
-        (([1.0, 2.0], [1.0, 1.0]), {"records": 1}, "error bars need two"),
-        (([1.0, 2.0], [1.0, 1.0]), {"slope": 0.1}, "level cavities only"),
+        ([1.0], 1.0, 0.0, {}, "two rows or more"),
+        ([2.0, 1.0], 1.0, 0.0, {}, "ascending"),
+        ([1.0, 2.0], 0.0, 0.0, {}, "one is above 0"),
+        ([1.0, 2.0], 1.0, 0.0, {"periods": 1e9}, "instants"),
+        ([1.0, 2.0], 1.0, 0.0, {"records": 1}, "error bars need two"),
+        ([1.0, 2.0], 1.0, 0.1, {}, "level cavities only"),
     ],
 )
-def test_what_cannot_be_is_refused(psd, options, says):
-    machine = MACHINE.changed(slope=options.pop("slope", 0.0))
+def test_what_cannot_be_is_refused(frequencies, densities, slope, options, says):
+    machine, given = MACHINE.changed(slope=slope), np.array(frequencies)
     with pytest.raises(ParameterError, match=says):
-        random_base(machine, machine.vector({"forcing": 0.0}), Density(*map(np.array, psd)), **options)
+        random_base(
+            machine, machine.vector({"forcing": 0.0}), Density(given, 0.0 * given + densities), **options
+        )
