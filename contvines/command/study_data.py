@@ -202,8 +202,6 @@ class Study:
         return {**self.describe(), "source": {"command": command, "study": place, "text": self.text}}
 
     def _model(self) -> dict[str, Any]:
-        if self.sort is Sort.PHYSICAL:
-            return self.model.settings()
         if self.sort is Sort.FLOW:
             own = {
                 "name": self.name,
@@ -211,13 +209,18 @@ class Study:
                 **self.start.model_dump(include={"state", "box"}),
             }
             return {**own, **self.parameters}
+        # files of versions without a younger parameter belong to the study in which it is zero
+        unsaid = {name for name in self.model.younger if not self.parameters[name]}
+        if self.sort is Sort.PHYSICAL:
+            return {key: value for key, value in self.model.settings().items() if key not in unsaid}
         own = self.model.settings() if self.sort is Sort.PAGE else {}
         # a machine file is identified by its text, not its path; a machine of the package by its name
         for name in ("page", "source", "digest") if self.name in PAGES else ("page",):
             own.pop(name, None)
         if self.sort is Sort.CATALOGUE and self.model.contact_time is not None:
             own = {"contact_time": self.model.contact_time}
-        return {**own, "name": self.name, **self.parameters}
+        given = {key: value for key, value in self.parameters.items() if key not in unsaid}
+        return {**own, "name": self.name, **given}
 
     def fingerprint(self, command: str = "diagram") -> str:
         """Return the digest of `describe()` and the command; equal for runs with equal results, and for a run and its continuation."""
