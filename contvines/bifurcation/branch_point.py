@@ -15,10 +15,10 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import NO_COLUMNS, SIGN, Aim, aim_at_multiplier
 from ..shared.numbers import TINY
-from .consistency import alone, is_astray, passes, passes_for_certain, singular, turned, unresolved
+from .consistency import is_jump, no_other_branch, sign_changes, singular, surely_changes, turned, unresolved
 from .kind import Kind, passing
 from .locate import Located, Role, Root, Segment, locate, locate_singular
-from .location_error import blurred
+from .location_error import with_rounding_error
 from .scan import balance, counts, sizes_by_sort
 
 WIDTH = 0.02  # half width of the window, relative to the segment, in which the determinant refines a known position
@@ -70,7 +70,7 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
             turning = _near(segment, root.position, folds)
             # a branch may turn exactly where it meets another one; at a plain fold the change of sign is rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
-                place = Located.at(root, "branch-point", astray=is_astray(segment, root))
+                place = Located.at(root, "branch-point", astray=is_jump(segment, root))
                 if not (place.astray or _may_pass(segment, root)):
                     place = replace(unresolved(segment, root.point), kind="branch-point")
                 points.append(place)
@@ -80,7 +80,7 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
 def _by_sign(segment: Segment) -> Root | None:
     """Locate the change of sign of the determinant on a segment; None if the change may be rounding."""
     rough = locate(segment, AT_SIGNS, tolerance=segment.engine.settings.aside)
-    if rough is None or not passes_for_certain(segment, rough.position):
+    if rough is None or not surely_changes(segment, rough.position):
         return None
     return locate_singular(segment, DeterminantTest(segment.engine, segment.border), rough.position) or rough
 
@@ -103,7 +103,7 @@ def _by_multipliers(segment: Segment, folds: list[float], meetings: list[float])
     if len(tests) == 1 and engine.scaled:
         # a fold changes the sign of det(F_u) only, a branch point also that of the bordered determinant
         one_fold = len(folds) == 1 and segment.a.sign * segment.b.sign > 0.0
-        if one_fold or (rounded and not passes(segment, 0.5, 0.5 + engine.settings.aside)):
+        if one_fold or (rounded and not sign_changes(segment, 0.5, 0.5 + engine.settings.aside)):
             return []
     points = []
     for test in tests:
@@ -113,13 +113,13 @@ def _by_multipliers(segment: Segment, folds: list[float], meetings: list[float])
         unit = min(1.0, *(float(np.abs(engine.spectrum(end.row)).max()) for end in (segment.a, segment.b)))
         if abs(test.function(root.point)) > engine.settings.critical * unit or _complex(segment, root.point):
             continue  # two real multipliers met and became a pair; none of them was on the circle
-        if not passes_for_certain(segment, root.position):
+        if not surely_changes(segment, root.position):
             continue
-        if alone(engine, root.point):
+        if no_other_branch(engine, root.point):
             # opposite signs: the ends lie on neighbouring branches; equal signs: the parameter turns by no more than rounding
             if segment.a.sign * segment.b.sign < 0.0:
                 points.append(Located.at(root, "", astray=True))
-        elif not rounded or passes(segment, root.position):
+        elif not rounded or sign_changes(segment, root.position):
             points.append(Located.at(root, "branch-point", test.index))
     return points
 
@@ -163,7 +163,7 @@ def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
                 root = other
         for event in group:
             found = event if root is None else Located.at(root, event.kind, event.index)
-            result.append(blurred(segment, found, aims[event.index]))
+            result.append(with_rounding_error(segment, found, aims[event.index]))
     return result
 
 
@@ -188,7 +188,7 @@ def _exchange(segment: Segment) -> Located | None:
     numbers = [test(rough.point)] + ([] if engine.detection == "real" else [aim(rough.point)])
     if max(map(abs, numbers)) > engine.settings.critical or _complex(segment, rough.point):
         return None
-    if not passes_for_certain(segment, rough.position):
+    if not surely_changes(segment, rough.position):
         return None
     root = locate_singular(segment, test, rough.position) or rough
     # both may be nearly zero, one on either side, without being zero

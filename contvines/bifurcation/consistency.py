@@ -43,7 +43,7 @@ ROUNDING = 32.0 * EPSILON  # assumed relative error of the entries of F_u and F_
 SPECTRUM_ERROR = 10.0  # assumed error of the other multipliers at a special point, in units of the critical one's distance from the circle
 
 
-def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
+def has_unexplained_change(segment: Segment, found: Sequence[Located]) -> bool:
     """Whether the numbers of multipliers outside the circle change by more than the points found on the segment explain.
 
     Real multipliers may pass through infinity, or change from past +1 to past -1 by way of complex pairs, without crossing the circle. A change
@@ -161,7 +161,7 @@ def unresolved(segment: Segment, middle: Solved) -> Located:
     return Located(0.5, middle, role=Role.UNRESOLVED, error=error, bracket=ends)
 
 
-def leap(segment: Segment, found: list[Located]) -> Located | None:
+def branch_jump(segment: Segment, found: list[Located]) -> Located | None:
     """Return a mark at the start of the segment if its ends lie on different branches, an unresolved mark if it is too short to decide, else None.
 
     Parameters
@@ -173,7 +173,7 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     stop = next((i for i, e in enumerate(found) if e.ends_branch), len(found))
     short = segment.length <= segment.engine.settings.resolution
     changed = _sign_unaccounted(segment, found, stop)
-    if not changed and (short or not any(inexact(segment, e) for e in found[: stop + 1])):
+    if not changed and (short or not any(is_inexact(segment, e) for e in found[: stop + 1])):
         return None
     if short:
         middle = segment.at(0.5)
@@ -181,7 +181,7 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     return Located(0.0, segment.a, role=Role.LEAP)
 
 
-def inexact(segment: Segment, event: Located) -> bool:
+def is_inexact(segment: Segment, event: Located) -> bool:
     """Whether a special point could not be located accurately, a sign that it does not exist."""
     if event.role is Role.UNRESOLVED:
         return False
@@ -213,7 +213,7 @@ def _sign_unaccounted(segment: Segment, found: list[Located], stop: int) -> bool
     inner = segment.several([share * reach for share in (inset, 1.0 - inset)])
     if inner[0] is not None and inner[1] is not None and not inner[0].sign * inner[1].sign < 0.0:
         return False
-    return certain(segment.engine, segment.a) and certain(segment.engine, last)
+    return sign_is_certain(segment.engine, segment.a) and sign_is_certain(segment.engine, last)
 
 
 # ------------------------------------------------------------------ the determinant
@@ -232,13 +232,13 @@ def singular(engine: Engine, point: Solved) -> bool:
     return not (np.isfinite(image).all() and engine.norm(image) < 1.0 / near)
 
 
-def is_astray(segment: Segment, root: Root) -> bool:
+def is_jump(segment: Segment, root: Root) -> bool:
     """Whether a change of the determinant's sign is no branch point: the segment has jumped from one branch to another."""
     engine = segment.engine
     return not (engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point))
 
 
-def alone(engine: Engine, point: Solved) -> bool:
+def no_other_branch(engine: Engine, point: Solved) -> bool:
     """Whether no other branch passes a point with a multiplier +1: the parameter is stationary, but [[F_u, F_p], [tangent]] is regular.
 
     At a branch point this matrix has a null vector besides the tangent.
@@ -253,14 +253,14 @@ def turned(a: Solved, b: Solved) -> bool | None:
     return bool(product < 0.0) if product else None
 
 
-def passes(segment: Segment, position: float, reach: float | None = None) -> bool:
+def sign_changes(segment: Segment, position: float, reach: float | None = None) -> bool:
     """Whether det(F_u) changes its sign within `reach` of a position on a segment, as it does if one eigenvalue vanishes there."""
     reach = segment.engine.settings.aside if reach is None else reach
     sides = segment.several((position - reach, position + reach))
     return sides[0] is not None and sides[1] is not None and turned(sides[0], sides[1]) is not False
 
 
-def certain(engine: Engine, point: Solved) -> bool:
+def sign_is_certain(engine: Engine, point: Solved) -> bool:
     """Whether the sign of det [[F_u, F_p], [tangent]] at a point is certain despite the errors of F_u and F_p.
 
     Returns True for problems that do not estimate these errors (see :class:`contvines.problems.abilities.Doubtful`), or have sparse matrices.
@@ -285,9 +285,10 @@ def certain(engine: Engine, point: Solved) -> bool:
             return False
 
 
-def passes_for_certain(segment: Segment, position: float) -> bool:
+def surely_changes(segment: Segment, position: float) -> bool:
     """Whether a change of the determinant's sign at a position in [0, 1] of a segment is not rounding: the sign is certain on both sides."""
     ends = ((segment.a, 0.0), (segment.b, 1.0))
     return all(
-        abs(position - s) <= segment.engine.settings.aside or certain(segment.engine, end) for end, s in ends
+        abs(position - s) <= segment.engine.settings.aside or sign_is_certain(segment.engine, end)
+        for end, s in ends
     )

@@ -13,8 +13,8 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.layout import Chunk, Status
 from ..problems.abilities import Nearing
 from ..shared.numbers import EPSILON
-from .consistency import at_one, leap
-from .evidence import evidence, filled, kinked, may_be_real, nearest, pointed, suspicious
+from .consistency import at_one, branch_jump
+from .evidence import evidence, fill_zeros, has_kink, kinks, may_be_real, nearest, possible_dips
 from .locate import Located, Role, Segment, locate
 from .location_error import rounding_of_parameter
 from .scan import Scan, counts, scanner, turns_round
@@ -64,10 +64,10 @@ class Detector(SegmentSearch):
         if scanned.quiet and not (self.own or meetings.any() or landings.any()):
             return []
         lengths, observed = scanned.lengths, evidence(engine, wide, self.own, scanned)
-        sides, outside = filled(observed.sides), observed.outside
+        sides, outside = fill_zeros(observed.sides), observed.outside
         borders = (outside[1:] != outside[:-1]) & (outside[1:] == real)
         differs = (sides[1:] != sides[:-1]).any(axis=1) | borders | meetings
-        columns, inside = suspicious(observed, scanned)
+        columns, inside = possible_dips(observed, scanned)
         smallest = observed.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(observed, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
@@ -75,7 +75,7 @@ class Detector(SegmentSearch):
             False  # a branch that returns to a symmetry's fixed space is marginal there; it is not split
         )
         may_reach = (scanned.reached > 0.0) & (not many) & ~meetings
-        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meetings
+        sharp = kinks(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meetings
         searched = differs | sharp | may_reach | inside.any(axis=1)
         own = slice(extra, extra + len(chunk) - 1)
         movable = landings[own] if chunk.status == Status.RUNNING else landings[own][:-1]
@@ -98,11 +98,11 @@ class Detector(SegmentSearch):
                 split = self.before_border(segment, border) if real and border else None
                 if split is not None:
                     found = self.both(segment, *split, real)
-            elif sharp[k] and kinked(segment):
+            elif sharp[k] and has_kink(segment):
                 return [*events, Located(float(i), segment.a, role=Role.LEAP)]
             else:
                 continue
-            if sharp[k] and not (many or found) and kinked(segment):
+            if sharp[k] and not (many or found) and has_kink(segment):
                 return [*events, Located(float(i), segment.a, role=Role.LEAP)]
             found, leaping = self._without_spurious(segment, found)
             if leaping is not None and leaping.role is Role.LEAP:
@@ -117,7 +117,7 @@ class Detector(SegmentSearch):
                 # where a stick or flight vanishes p is stationary: a fold at the border is not a point of its own
                 found = [e for e in found if e is stop or self._distinct_from_end(e, stop)]
                 events = [e for e in events if self._distinct_from_end(e, stop)]
-            events += before_stop(found)
+            events += up_to_end(found)
             if stop is not None:
                 return events
         if landed is None:
@@ -129,7 +129,7 @@ class Detector(SegmentSearch):
     ) -> tuple[list[Located], Located | None]:
         """Return the special points in order, without spurious ones and those whose error exceeds the interval; and a mark if the ends show a leap."""
         found = sorted(found, key=POSITION)
-        leaping, most = leap(segment, found), self.engine.upper - self.engine.lower
+        leaping, most = branch_jump(segment, found), self.engine.upper - self.engine.lower
         special = [
             e for e in found if not (e.astray or (e.role is Role.SPECIAL and not e.name and e.error > most))
         ]
@@ -171,7 +171,7 @@ class Detector(SegmentSearch):
             or self._parameter_differs(origin, e.point, max(flat, 10.0 * e.error))
         ]
         leaps = leaping is not None and leaping.role is Role.LEAP
-        return before_stop(found) + ([leaping] if leaping is not None and leaps else [])
+        return up_to_end(found) + ([leaping] if leaping is not None and leaps else [])
 
     def _parameter_differs(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
         """Whether the parameter of a point differs from that of a branch point by at least its error and rounding."""
@@ -293,7 +293,7 @@ def _placed(event: Located, position: float, bracket: tuple[float, float]) -> Lo
     )
 
 
-def before_stop(events: list[Located]) -> list[Located]:
+def up_to_end(events: list[Located]) -> list[Located]:
     """Return the events up to and including the first one at which the branch ends."""
     stop = next((i for i, event in enumerate(events) if event.ends_branch), len(events))
     return events[: stop + 1]

@@ -86,7 +86,7 @@ def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan |
     return Evidence(np.column_stack(sides).astype(int), np.column_stack(distances), rows[:, 2 * engine.m :])
 
 
-def filled(sides: np.ndarray) -> np.ndarray:
+def fill_zeros(sides: np.ndarray) -> np.ndarray:
     """Replace each 0 in `sides`, shape (n, k), by the last nonzero side before it; at the beginning, by the first nonzero side."""
     nonzero = sides != 0
     if nonzero.all():
@@ -96,7 +96,7 @@ def filled(sides: np.ndarray) -> np.ndarray:
     return np.take_along_axis(sides, np.where(last < 0, nonzero.argmax(axis=0), last), axis=0)
 
 
-def suspicious(observed: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
+def possible_dips(observed: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
     """Find the segments on which a distance may dip to zero: the parabola through three neighbouring values of one sign crosses zero.
 
     Returns
@@ -118,7 +118,7 @@ def suspicious(observed: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
     return columns, found
 
 
-def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+def kinks(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """Find the segments with equal signs at both ends in which straight lines through the neighbouring values, from both sides, reach zero.
 
     Two eigenvalues may cross zero there at once; for problems with many unknowns only the eigenvalue nearest to zero is known along the branch.
@@ -189,7 +189,7 @@ def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) ->
         return np.fmin.reduce(sizes, axis=1, initial=np.inf)
 
 
-def kinked(segment: Segment) -> bool:
+def has_kink(segment: Segment) -> bool:
     """Whether the distance of the nearest real multiplier from the circle has a kink at zero within a segment: its sides stay as steep at every zoom.
 
     On one branch a multiplier touches the circle along a parabola. If its distance falls to zero in a straight line and no count changes, a step

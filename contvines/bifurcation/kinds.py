@@ -16,7 +16,7 @@ from ..continuation.layout import NO_COLUMNS, SLOPE, Aim
 from ..continuation.settings import Settings
 from ..problems.abilities import Adaptive, Critical
 from .branch_point import BRANCH_POINT
-from .consistency import alone
+from .consistency import no_other_branch
 from .kind import JUMP, Classified, Kind, Point, PointOnBranch, Test, passing
 from .locate import Segment
 from .location_error import rounding_of_parameter
@@ -51,7 +51,7 @@ def turns_back(point: Point) -> bool:
     assert isinstance(point, PointOnBranch) and point.segment is not None
     segment, engine = point.segment, point.engine
     if engine.adaptive and _upright(segment):
-        return alone(engine, point.solved)
+        return no_other_branch(engine, point.solved)
     if segment.turns:
         return True
     reach = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
@@ -102,7 +102,7 @@ def _from_minus_one(engine: Engine, point: Solved) -> float:
     return float(np.real(np.prod((1.0 + spectrum) / (1.0 + np.abs(spectrum)))))
 
 
-def alone_at_circle(point: Point) -> bool:
+def is_at_minus_one(point: Point) -> bool:
     """Whether the multiplier nearest to -1 really is -1 at a located zero.
 
     If its distance from -1 is not small, and another multiplier is nearer to it than that, the two have met beside the circle and left the real axis.
@@ -149,7 +149,7 @@ PASSING = (
         marker="D",
         filled=False,
         tests=partial(flips, kind="symmetry-breaking"),
-        verify=alone_at_circle,
+        verify=is_at_minus_one,
         locus="flip",
         leaves="doubled",
         without="a pair of solutions of less symmetry leaves here; this problem has no equations for it",
@@ -161,7 +161,7 @@ PASSING = (
         marker="^",
         filled=False,
         tests=partial(flips, kind="period-doubling"),
-        verify=alone_at_circle,
+        verify=is_at_minus_one,
         locus="flip",
         leaves="doubled",
         without="a solution of twice the period leaves here; this problem has no equations for it",

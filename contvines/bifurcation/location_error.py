@@ -32,7 +32,7 @@ CRITICAL = {"period-doubling": -1.0, "neimark-sacker": 1.0, "branch-point": 1.0,
 SINGULAR = ("branch-point", "symmetry-breaking")
 
 
-def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -> Located:
+def with_rounding_error(segment: Segment, event: Located, test: Callable[[Solved], float]) -> Located:
     """Return the event with its error enlarged to the rounding of its critical eigenvalue.
 
     Parameters

@@ -16,13 +16,13 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, Status, packed
 from ..shared.numbers import EPSILON, TINY
-from .consistency import at_one, is_astray, on_circle, unaccounted, unresolved
+from .consistency import at_one, has_unexplained_change, is_jump, on_circle, unresolved
 from .evidence import Evidence, evidence
 from .first_border import border_of, first_zero
 from .kind import Kind, PointOnBranch, Test, UserFunction, own_tests, verified
 from .kinds import BY_NAME, KINDS
 from .locate import Located, Role, Segment, locate, locate_singular
-from .location_error import blurred
+from .location_error import with_rounding_error
 from .scan import SymmetryTest, parabola_dips, reached, turns_round
 from .settings import LIMITS
 
@@ -110,7 +110,7 @@ class SegmentSearch:
         if before is not None:
             return [*before, *stop]
         found = self._of_all_kinds(segment, stop)
-        middle = segment.at(0.5) if unaccounted(segment, found) else None
+        middle = segment.at(0.5) if has_unexplained_change(segment, found) else None
         if middle is not None:
             closer = depth < self.deepest and segment.length > self.engine.settings.resolution
             if closer and self.parts < self.engine.settings.parts:
@@ -195,7 +195,9 @@ class SegmentSearch:
             if root is None or not root.continuous:
                 continue
             if verified(kind, PointOnBranch(self.engine, root.point, segment)):
-                found.append(blurred(segment, Located.at(root, kind.name, test.index), test.function))
+                found.append(
+                    with_rounding_error(segment, Located.at(root, kind.name, test.index), test.function)
+                )
         return found
 
     def _own(self, segment: Segment) -> list[Located]:
@@ -245,7 +247,7 @@ class SegmentSearch:
         if unbounded or _hidden(engine, end.b) or on_circle(engine, end.b, LIMITS.agreeing):
             return []
         found = self._of_all_kinds(end, [])
-        middle = end.at(0.5) if unaccounted(end, found) else None
+        middle = end.at(0.5) if has_unexplained_change(end, found) else None
         return [e for e in found if not e.astray] + ([] if middle is None else [unresolved(end, middle)])
 
     def _meeting(self, segment: Segment) -> Located | None:
@@ -275,7 +277,7 @@ class SegmentSearch:
             if root is not None:
                 at = test.symmetry.kind_at
                 kind = test.kind if at is None else at(root.point.u)
-                events.append(Located.at(root, kind, index, Role.MEETING, is_astray(segment, root)))
+                events.append(Located.at(root, kind, index, Role.MEETING, is_jump(segment, root)))
         if not events:
             return None
         first_met = min(events, key=lambda event: event.position).point

@@ -180,7 +180,7 @@ def unpack(record: dict[str, Any]) -> list[Located]:
     return events
 
 
-def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
+def with_points_between(half: HalfBranch, origin: int | None = None) -> HalfBranch:
     """Return the half branch with a solved point inserted between neighbouring special points, or ends, without a point between.
 
     The stability between two special points needs such a point. `origin` is the index of the special point from which the branch was reached.
@@ -199,7 +199,7 @@ def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
             Solved(u, p, tangent, np.zeros(0), 0.0, 0.0, 0.0) for u, p, tangent in map(half.at, (i, i + 1))
         )
         segment = Segment(engine, one, other)
-        narrow = a_sliver(kinds.get(i, BEGINNING), kinds.get(i + 1, BEGINNING))
+        narrow = may_be_stable_between(kinds.get(i, BEGINNING), kinds.get(i + 1, BEGINNING))
         if not segment.length > (engine.settings.sliver if narrow else engine.settings.one_place):
             continue
         middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
@@ -208,7 +208,7 @@ def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
     return half.inserted(inserted) if inserted else half
 
 
-def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
+def may_be_stable_between(one: Collection[str], other: Collection[str]) -> bool:
     """Whether solutions between neighbouring points of these kinds may be stable although those on both outer sides are not."""
     return any(a != b and {a, b} & STABILITY_CHANGES for a in one for b in other)
 

@@ -198,7 +198,7 @@ def _opening(
     else:
         events, times = unpack(recorded), int(recorded.get("nearer", 0))
     for _ in range(times):
-        start = nearer(engine, origin, start) or start
+        start = nearer_start(engine, origin, start) or start
     ends = bool(events) and events[-1].ends_branch
     points = [origin, *(event.point for event in events), *([] if ends else [start])]
     half = HalfBranch(detector, [piece_of(engine, *points)], list(enumerate(events, 1)))
@@ -213,7 +213,7 @@ def _searched_opening(
     engine, whole = detector.engine, detector.beside(origin, start, real)
     events, times, point = whole, 0, start
     while events and events[-1].role is Role.LEAP:
-        closer = nearer(engine, origin, point)
+        closer = nearer_start(engine, origin, point)
         if closer is None or engine.distance(origin, closer) <= engine.settings.resolution:
             return whole[:-1], 0
         times, point = times + 1, closer
@@ -221,7 +221,7 @@ def _searched_opening(
     return events, times
 
 
-def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
+def nearer_start(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
     """Compute a point of a branch that leaves the special point `origin`, nearer to it than the known `point`; None if there is none.
 
     The tangent of `origin` points along the branch; the guess lies on the parabola through both points.
@@ -239,7 +239,7 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
     return found if missed <= LARGEST_MISS * SHORTER * abs(along) else None
 
 
-def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
+def on_real_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
     """Move the first point of a leaving branch nearer to its origin until its margins are positive, if those of the origin are.
 
     Returns the given point if that is not possible.
@@ -250,7 +250,7 @@ def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved
     while closer is not None and engine.distance(origin, closer) > engine.settings.resolution:
         if float(engine.smallest_margin(closer.row)) >= MARGIN:
             return closer
-        closer = nearer(engine, origin, closer)
+        closer = nearer_start(engine, origin, closer)
     return point
 
 

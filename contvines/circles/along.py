@@ -101,7 +101,7 @@ class Birth(NamedTuple):
         return Curve(points, self.rotation, self.value(amplitude))
 
 
-def anchored(point: SpecialPoint) -> Problem:
+def problem_at(point: SpecialPoint) -> Problem:
     """Return the problem of a point; for cycles of a flow one that starts at the point, so that the section is the plane across this cycle."""
     problem = point.attached
     if not isinstance(problem, CycleProblem):
@@ -109,8 +109,8 @@ def anchored(point: SpecialPoint) -> Problem:
     return problem.with_unknowns(point.u, float(point.value), problem.intervals, problem.copies)
 
 
-def born(point: SpecialPoint, problem: Problem) -> Birth:
-    """Compute the normal form of the circles near a point; `problem` is the result of `anchored`.
+def birth_at(point: SpecialPoint, problem: Problem) -> Birth:
+    """Compute the normal form of the circles near a point; `problem` is the result of `problem_at`.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from ..long_work import listening
 from ..problems.abilities import notation_of
 from ..problems.registry import without_problem
 from ..shared.numbers import TINY
-from .along import Birth, Family, anchored, born
+from .along import Birth, Family, birth_at, problem_at
 from .circle import Circle, Circles
 from .invariance import CIRCLES, Curve, between, rotation_number
 from .section import Section, Watched, section_of
@@ -64,8 +64,8 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         raise ValueError(without_problem(point.label))
     if count < 1:
         raise ValueError(f"count = {count} must be a whole number of at least 1")
-    problem = anchored(point)
-    birth = born(point, problem)
+    problem = problem_at(point)
+    birth = birth_at(point, problem)
     side = 1.0 if birth.value(1.0) > point.value else -1.0
     if to is not None and not (to - point.value) * side > 0.0:
         raise ValueError(

@@ -19,9 +19,9 @@ from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
 from ..problems.abilities import Population
 from .census import Counted, census, join, population_of
 from .effort import BUDGET, Effort
-from .places import Handover, scattered, unasked, unknown, unresolved
+from .places import Handover, scattered_value, unknown, unresolved, untested_values
 from .settings import ATLAS
-from .windows import CYCLES, Windows, run_apart
+from .windows import CYCLES, Windows, separate_run
 
 T = TypeVar("T")
 STARTS = 256  # default number of starts at each given value, for closed-form machines
@@ -200,7 +200,7 @@ class _Search:
         self.asked: list[float] = []
         self.found: list[Counted] = []
         self.handover = Handover(run, population)
-        separate = run_apart(run)
+        separate = separate_run(run)
         self.effort = Effort(population, budget, lambda: run.cost + separate.cost)
         self.windows = Windows(run, population, separate, self.effort)
         self.left: dict[str, int] = {}  # by kind of work, number of pieces that the budget did not allow
@@ -251,7 +251,7 @@ class _Search:
 
     def between(self, most: int) -> None:
         """Simulate at one value at least in each stretch between two changes of stability, new changes included, at up to `most` values."""
-        self._few(partial(unasked, self.run.graph), most)
+        self._few(partial(untested_values, self.run.graph), most)
 
     def unbranched(self, most: int) -> None:
         """Simulate at up to `most` values near to which a kind of motion without a branch begins or ends."""
@@ -292,7 +292,7 @@ class _Search:
         ):
             self.effort.expect(SCATTERED, left)
             with self.effort.piece(SCATTERED):
-                p = scattered(self.run.graph.within, self.seed, k)
+                p = scattered_value(self.run.graph.within, self.seed, k)
                 added = self.few(p)
             fruitless = 0 if added else fruitless + 1
             k += 1

@@ -86,7 +86,7 @@ def census(population: Population, p: float, count: int, seed: int, journal: Jou
     return _settled(population, p, lambda: population.starts(count, seed, p), key, journal)
 
 
-def followed(
+def motions_from(
     population: Population, p: float, starts: np.ndarray, key: str, journal: Journal
 ) -> list[Counted]:
     """Simulate given starts and return the motions reached, with share 0: chosen starts say nothing about shares.
@@ -132,7 +132,7 @@ def _settled(
             )
         return found
 
-    return remembered(population, key, journal, simulated, _record, recalled)
+    return recorded_or_computed(population, key, journal, simulated, _record, recalled)
 
 
 MEASURED = ("share", "mirror_share", "exponent", "error")
@@ -153,7 +153,7 @@ def _record(found: Sequence[Counted]) -> dict[str, Any]:
     return record
 
 
-def remembered(
+def recorded_or_computed(
     population: Population,
     key: str,
     journal: Journal,

@@ -19,12 +19,12 @@ from ..graph import Graph
 from ..graph.run import Run
 from ..graph.stretches import MEETING
 from ..problems.abilities import Population
-from .census import UNBRANCHED, Counted, followed
+from .census import UNBRANCHED, Counted, motions_from
 from .settings import ATLAS
 
 # part of the interval to which the ends of a kind of motion without a branch are resolved
 RESOLVED = 0.01
-TURN = 0.5 * (np.sqrt(5.0) - 1.0)  # increment of the additive recurrence in `scattered`
+TURN = 0.5 * (np.sqrt(5.0) - 1.0)  # increment of the additive recurrence in `scattered_value`
 # distances beyond the end of a stable stretch at which the motion is followed, relative to the stretch's width:
 JUST_BEYOND = 0.01  # just beyond the end;
 # beyond a cascade of doublings, which is over after 0.27 of the stretch before it (Feigenbaum's 1 / (4.669 - 1));
@@ -32,7 +32,7 @@ BEYOND_CASCADE = 1.0
 FARTHER = 4.0  # relative to the largest distance, if all motions there settle too slowly to be recognised
 
 
-def scattered(within: tuple[float, float], seed: int, k: int) -> float:
+def scattered_value(within: tuple[float, float], seed: int, k: int) -> float:
     """Return the k-th of a sequence of values that fills an interval evenly, whatever the number of values.
 
     ``shift + k (sqrt(5) - 1) / 2 mod 1``; among its first n values no gap is wider than 1.9 / n of the interval (the
@@ -49,7 +49,7 @@ def changes(graph: Graph) -> np.ndarray:
     return np.array(sorted({*graph.within, *ends}))
 
 
-def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
+def untested_values(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
     """Return values at which the attractors may differ from those found at the simulated values.
 
     Each stretch between two neighbouring changes of stability may have other attractors. The values returned are the middle of each
@@ -187,7 +187,7 @@ class Handover:
             if starts is not None:
                 self.run.tell(f"{end.label} followed to {self.population.parameter} = {p:.6g}", p)
                 key = f"handover/{end.label}/{end.value!r}/{end.side}/{p!r}"
-                found += followed(self.population, p, starts, key, self.run.journal)
+                found += motions_from(self.population, p, starts, key, self.run.journal)
         return [counted for counted in found if counted.attractor.kind != "impossible"]
 
     def _starts_beside(self, end: End, p: float) -> np.ndarray | None:

@@ -16,7 +16,7 @@ from ..graph.run import Run
 from ..journal import Part
 from ..problems.abilities import Population
 from ..problems.protocol import Problem
-from .census import Counted, Solution, add_root, remembered
+from .census import Counted, Solution, add_root, recorded_or_computed
 from .effort import Effort
 from .settings import ATLAS
 
@@ -35,7 +35,7 @@ class Windows:
         Of the atlas.
     population : Population
     apart : Run
-        The run with the separate graph; see :func:`run_apart`.
+        The run with the separate graph; see :func:`separate_run`.
     effort : Effort
         No search begins once its budget is used up.
     """
@@ -110,7 +110,7 @@ class Windows:
             return found
 
         with self.effort.piece(CYCLES):
-            found = remembered(self.population, key, self.run.journal, cycles, _record, recalled)
+            found = recorded_or_computed(self.population, key, self.run.journal, cycles, _record, recalled)
             stable: list[tuple[Problem, np.ndarray, float]] = []
             for k, (problem, u) in enumerate(found):
                 if self.effort.over:
@@ -149,7 +149,7 @@ def _record(cycles: Sequence[Solution]) -> dict[str, Any]:
     return {"problems": [problem.describe() for problem, _ in cycles], **parts}
 
 
-def run_apart(run: Run) -> Run:
+def separate_run(run: Run) -> Run:
     """Return a run with a separate graph, for branches that another run traces without adding them to its graph."""
     whole = run.graph
     graph = Graph(

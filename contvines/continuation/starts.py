@@ -162,7 +162,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
         raise ValueError(f"the start must be {engine.n} finite numbers, not {u}")
     found = engine.start(u, p)
     if found is None:
-        if different := unlike_twice(engine, u, p):
+        if different := differing_residuals(engine, u, p):
             raise ValueError(f"the start at {name} = {p:.10g}: {different}")
         residual = engine.residual(u, p)
         reason = f"does not converge (its residual is {residual:.3g})"
@@ -177,7 +177,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
     return found
 
 
-def unlike_twice(engine: Engine, u: np.ndarray, p: float) -> str:
+def differing_residuals(engine: Engine, u: np.ndarray, p: float) -> str:
     """Return a sentence if the user's equations give different residuals in two evaluations at the same point; empty if not, or not evaluable."""
     problem = engine.problem
     if engine.compiled or not isinstance(problem, Rough):

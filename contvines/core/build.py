@@ -79,7 +79,7 @@ def _accepts(command: list[str]) -> bool:
     return done.returncode == 0
 
 
-def zig(target: str = "") -> list[str] | None:
+def ziglang_command(target: str = "") -> list[str] | None:
     """Return the command of the compiler in the wheel `ziglang`; None if it is not installed."""
     from importlib.util import find_spec
 
@@ -107,7 +107,7 @@ def build(folder: Path = HERE, command: list[str] | None = None) -> list[Path]:
     NotBuilt
         If there is no compiler, or it fails.
     """
-    command = command or compiler() or zig()
+    command = command or compiler() or ziglang_command()
     if command is None:
         raise NotBuilt(f"there is no C++ compiler (CXX, c++, g++, clang++); pip install {ZIG} brings one")
     with ThreadPoolExecutor() as pool:  # each thread waits for a compiler process

@@ -1,6 +1,6 @@
 """Build an automatic diagram, branch by branch. The order is deterministic, so that a repeated run with a journal finds all recorded results.
 
-For each pending branch of the run's queue: `new_branch` solves for its first point and compares it with known branches, `followed` traces it in both
+For each pending branch of the run's queue: `new_branch` solves for its first point and compares it with known branches, `follow_both_ways` traces it in both
 directions, :func:`~contvines.graph.label_special_points.mark` labels its special points, and :func:`~contvines.graph.schedule_branches.leave` queues
 the branches that leave them, :func:`~contvines.graph.match_borders.cross` those beyond borders.
 """
@@ -19,14 +19,14 @@ from ..bifurcation.kinds import BORDERS
 from ..bifurcation.scan import sizes_by_sort
 from ..bifurcation.settings import LOCATING
 from ..branches import Ending, Reason
-from ..branches.half_branch import HalfBranch, Meshes, filled, make_branch
-from ..branches.tracing import from_border, on_this_side, trace_half
+from ..branches.half_branch import HalfBranch, Meshes, make_branch, with_points_between
+from ..branches.tracing import from_border, on_real_side, trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, Status
 from ..continuation.starts import solve_start, start_remark
 from ..long_work import listening, take
 from ..problems.protocol import Problem
-from .identity import parts_further_on
+from .identity import separates_further_on
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tell_dead_end, tie_borders
 from .run import LARGE, LOCATED, Origin, Pending, Run
@@ -198,7 +198,7 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
     match = run.register.find(pending.problem, first.u, first.p, real)
     if match is not None and pending.kind is Origin.SWITCH and match.label == pending.source:
         match_engine = run.engine(match.attached)
-        match = None if parts_further_on(match, match_engine, engine, first) else match
+        match = None if separates_further_on(match, match_engine, engine, first) else match
     if match is not None:
         if pending.kind is Origin.BORDER and pending.point is not None and match.label == pending.source:
             run.remark(pending.point, "the solution found beyond lies on the same branch")
@@ -214,7 +214,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     """Trace a new branch, label its special points, and queue the branches that leave it."""
     run.serial += 1
     label = run.new_label("B")
-    half, endings, closed = followed(run, pending, first, real, label)
+    half, endings, closed = follow_both_ways(run, pending, first, real, label)
     if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
         name = pending.problem.parameter
         raise ValueError(
@@ -226,7 +226,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return
-    if pending.kind is Origin.BORDER and of_no_length(run, half):
+    if pending.kind is Origin.BORDER and has_no_length(run, half):
         run.numbers["B"] -= 1
         return  # the border's own solution once more: no crossing
     if pending.kind is Origin.BORDER and begins_elsewhere(run, half, pending):
@@ -234,7 +234,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
         run.remark(str(pending.point), "a solution found nearby lies on a branch that does not begin here")
         return
     origin = origin_index(half, pending)
-    whole = filled(half, origin)
+    whole = with_points_between(half, origin)
     if whole is not half:
         half, origin = whole, origin_index(whole, pending)
     engine = half.engine
@@ -253,7 +253,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
 
 
 # ------------------------------------------------------------------ both directions
-def followed(
+def follow_both_ways(
     run: Run, pending: Pending, first: Solved, real: bool, label: str
 ) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
     """Follow a branch in both directions; return it in order, its two endings, and whether it is closed.
@@ -347,7 +347,7 @@ def _ending(half: HalfBranch) -> Ending:
 
 
 # ------------------------------------------------------------------ first points
-def of_no_length(run: Run, half: HalfBranch) -> bool:
+def has_no_length(run: Run, half: HalfBranch) -> bool:
     """Whether a branch has no length but for rounding, or is real by rounding only."""
     nowhere = run.settings.rounding
     whole, unit = half.joined(), run.unit(half.end)
@@ -396,7 +396,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 # move off a special point, or it is detected on neither half; by less than a step, so that it differs from the second point
                 step = OFFSET * run.settings.first_step
             if step > 0.0:
-                first = moved_off(engine, first, step, side)
+                first = neighbouring_point(engine, first, step, side)
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
@@ -411,7 +411,9 @@ def at_special_point(run: Run, engine: Engine, first: Solved) -> bool:
         return point is not None and bool((np.abs(sizes_by_sort(engine, point.row)) <= LOCATING.past).any())
 
     step = run.settings.first_step  # in conservative systems multipliers are on the circle at all points
-    return on_circle(first) and not any(on_circle(beside(engine, first, side)) for side in (step, -step))
+    return on_circle(first) and not any(
+        on_circle(point_at_distance(engine, first, side)) for side in (step, -step)
+    )
 
 
 def _move_nearer(engine: Engine, pending: Pending) -> None:
@@ -419,7 +421,7 @@ def _move_nearer(engine: Engine, pending: Pending) -> None:
     origin, sides = pending.origin, (pending.ahead, pending.back)
     if origin is None:
         return
-    pending.ahead, pending.back = (on_this_side(engine, origin, side) for side in sides)
+    pending.ahead, pending.back = (on_real_side(engine, origin, side) for side in sides)
     for before, point in zip(sides, (pending.ahead, pending.back)):
         if point is not None and point is not before:
             step = engine.distance(origin, point)
@@ -432,20 +434,20 @@ def shortened_step(engine: Engine, border: Solved, step: float) -> float | None:
     The branch may be real in a short window only.
     """
     for length in (step, 0.1 * step, 0.01 * step, 0.001 * step):
-        found = beside(engine, border, length)
+        found = point_at_distance(engine, border, length)
         if found is not None and float(engine.smallest_margin(found.row)) >= MARGIN:
             return None if length == step else length
     return None
 
 
-def moved_off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
+def neighbouring_point(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
     """Return a point of the same branch at a small distance, ahead if possible; real or virtual as `real` says, if not None.
 
     Returns the given point if there is none.
     """
     for length in (step, 0.1 * step, 0.01 * step):
         for side in (length, -length):
-            found = beside(engine, point, side)
+            found = point_at_distance(engine, point, side)
             if found is None:
                 continue
             if real is None or (float(engine.smallest_margin(found.row)) >= MARGIN) == real:
@@ -453,7 +455,7 @@ def moved_off(engine: Engine, point: Solved, step: float, real: bool | None) -> 
     return point
 
 
-def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
+def point_at_distance(engine: Engine, point: Solved, step: float) -> Solved | None:
     """Return the point of the same branch at a small distance; None if it lies outside the interval."""
     found = engine.beside(point, step)
     return found if found is not None and engine.lower <= found.p <= engine.upper else None

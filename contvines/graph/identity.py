@@ -226,7 +226,7 @@ def _crossings(
             yield gap, False
 
 
-def parts_further_on(branch: Branch, known_engine: Engine, engine: Engine, first: Solved) -> bool:
+def separates_further_on(branch: Branch, known_engine: Engine, engine: Engine, first: Solved) -> bool:
     """Whether a branch whose first point equals a point of a known branch, within `Settings.same`, is a different branch that leaves at a small angle.
 
     It is followed with steps that double until it is away from the known branch, or far along it. Example: solutions of x (x - 1) (p - 3 x) = 0

@@ -16,7 +16,7 @@ from ..bifurcation.location_error import mesh_error, missed, singular_within
 from ..bifurcation.scan import counts
 from ..bifurcation.switching import null_vectors
 from ..branches import Branch, Ending, Reason
-from ..branches.half_branch import HalfBranch, a_sliver, stability
+from ..branches.half_branch import HalfBranch, may_be_stable_between, stability
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
@@ -372,5 +372,5 @@ def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, floa
 def _may_hide(one: _Place, other: _Place) -> bool:
     """Whether solutions between two places may be stable although those on both outer sides are not."""
     if isinstance(one.subject, SpecialPoint) and isinstance(other.subject, SpecialPoint):
-        return a_sliver((one.subject.kind,), (other.subject.kind,))
+        return may_be_stable_between((one.subject.kind,), (other.subject.kind,))
     return True

@@ -214,7 +214,7 @@ def united(intervals: Iterable[tuple[float, float]]) -> list[tuple[float, float]
     return joined
 
 
-def unseen(
+def not_simulated(
     open_: Sequence[tuple[float, float]], within: tuple[float, float], simulated: Sequence[float]
 ) -> list[tuple[float, float]]:
     """Return the parts of gaps that simulation has not covered.

@@ -112,7 +112,7 @@ def find(locus: Locus) -> list[Found]:
     problem, branch = locus.problem, locus.branch
     if problem is None:
         return []
-    points = bare_points(branch.points, branch.values, branch.tangents)
+    points = without_rows(branch.points, branch.values, branch.tangents)
     if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(problem, points)):
         return []  # the tests are meaningless where the equations are singular all along the locus
     ends = (0, points[0]), (len(points) - 1, points[-1])
@@ -127,7 +127,7 @@ def find(locus: Locus) -> list[Found]:
     return sorted([*found, *beginnings], key=lambda pair: pair[0])
 
 
-def bare_points(points: np.ndarray, values: np.ndarray, tangents: np.ndarray) -> list[Solved]:
+def without_rows(points: np.ndarray, values: np.ndarray, tangents: np.ndarray) -> list[Solved]:
     """Wrap arrays of points as `Solved`, without rows."""
     rest = np.zeros(0), 0.0, 0.0, 0.0
     return [Solved(u, float(q), tangent, *rest) for u, q, tangent in zip(points, values, tangents)]
@@ -333,7 +333,7 @@ class Becomes(NamedTuple):
     u: np.ndarray | None = None
 
 
-def becomes(locus: LocusProblem, place: Place) -> Becomes | None:
+def simpler_motion(locus: LocusProblem, place: Place) -> Becomes | None:
     """Return the more symmetric motion that the motion at a place of a locus nearly equals; None if there is none."""
     u, p, q = place
     whole = locus.at(q)
@@ -370,7 +370,7 @@ def beginning(
         Estimated distance of the parameters from those of the point.
     """
     place = _place(locus, end)
-    simpler, (_, p, q) = simpler or becomes(locus, place), place
+    simpler, (_, p, q) = simpler or simpler_motion(locus, place), place
     if simpler is None or simpler.problem is None or simpler.u is None:
         return None
     kinds = FIRST_OF_EQUILIBRIA if simpler.problem.spectrum == "flow" else FIRST_OF_CYCLES

@@ -26,7 +26,7 @@ from ..problems.protocol import Problem
 from ..problems.registry import without_problem
 from ..shared.numbers import number_text
 from .adaptive import on_mesh
-from .codimension_two import bare_points, becomes, beginning, vanishing
+from .codimension_two import beginning, simpler_motion, vanishing, without_rows
 from .departures import homoclinic_of
 from .kernels import BRANCH, MARGIN, PERIOD
 from .locus import Locus, PlanePoint, Turn
@@ -337,14 +337,14 @@ def becoming(half: HalfBranch, within: Interval) -> tuple[str, PlanePoint | None
     if half.status not in SINGULAR:
         return "", None
     problem = locus_of(half)
-    points = bare_points(*half.joined()[:3])
+    points = without_rows(*half.joined()[:3])
     (u, p), q = problem.split(points[-1].u), points[-1].p
     if isinstance(problem.base, Adaptive):
         end, name = vanishing(problem, points, within), "an equilibrium"
         if end is None:
             return "", None
     else:
-        simpler = becomes(problem, Place(u, float(p), q))
+        simpler = simpler_motion(problem, Place(u, float(p), q))
         if simpler is None:
             return "", None
         name = "a shorter one, run twice" if simpler.kind == "period-doubling" else "symmetric"

@@ -10,11 +10,11 @@ import numpy as np
 
 from contvines.shared.motions import BAND, modulation_of
 
-from ..coexistence.census import Counted, add_root, census, followed, join, locate, run_on
+from ..coexistence.census import Counted, add_root, census, join, locate, motions_from, run_on
 from ..coexistence.places import Handover
 from ..graph import Graph
 from ..graph.run import Limits, Run
-from ..graph.stretches import COVERAGE, SIMULATED, default_measure, gaps, spread, stretches, unseen
+from ..graph.stretches import COVERAGE, SIMULATED, default_measure, gaps, not_simulated, spread, stretches
 from ..problems.abilities import Population
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     tried: set[float] = set()
     for at_least in (values, *[1] * PASSES) if values else ():
         found_now.clear()
-        unknown = unseen(gaps(graph), graph.within, [one.value for one in left if one.measures])
+        unknown = not_simulated(gaps(graph), graph.within, [one.value for one in left if one.measures])
         for p in sorted({*spread(unknown, graph.within, at_least)} - tried):
             tried.add(p)
             keep(census(population, p, FEW, 0, run.journal), run.depth)
@@ -128,7 +128,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
             starts = population.starts(FEW, 0, p)
             if state is not None and state.shape == starts[0].shape:
                 starts = np.vstack([state, starts])
-            keep(followed(population, p, starts, f"largest/{p!r}", run.journal), run.depth)
+            keep(motions_from(population, p, starts, f"largest/{p!r}", run.journal), run.depth)
         left += _observed(population, found_now)
     if untraced:
         spent = f"completion = {run.settings.completion} is spent: {untraced} motions that were met have no branch; raise it to trace them"

@@ -15,7 +15,7 @@ import numpy as np
 from contvines.shared.motions import BAND, is_strong
 
 from ..coexistence.census import UNBRANCHED
-from ..graph.stretches import COVERAGE, default_measure, gaps, highest, stretches, united, unseen
+from ..graph.stretches import COVERAGE, default_measure, gaps, highest, not_simulated, stretches, united
 from ..shared.numbers import figures_in
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _unknown_parts(found: Findings) -> list[tuple[float, float]]:
     """Return the intervals in which no stable response is known, neither from a branch nor by simulation."""
     name = default_measure(found.graph)
     values = [value for value, measures in _without_branch(found) if np.isfinite(measures.get(name, np.nan))]
-    return unseen(gaps(found.graph), found.graph.within, values)
+    return not_simulated(gaps(found.graph), found.graph.within, values)
 
 
 def unknown(found: Findings) -> str:

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import contvines as cv
-from contvines.graph.stretches import spread, unseen
+from contvines.graph.stretches import not_simulated, spread
 from contvines.survey import PlanError, survey
 from orbits import coupled_two
 from orbits.attractors.sweeping import sweep
@@ -148,8 +148,8 @@ def test_a_completion_whose_budget_is_spent_says_so_and_answers_by_simulation():
 def test_gaps_are_seen_where_values_are_near_enough():
     """A fortieth of the interval [0, 10] is 0.25: 3.1 is too far from 2.8 and from 3.5, 6 has no value in its gap."""
     open_ = [(1.0, 1.5), (2.6, 3.5), (5.0, 6.0)]
-    assert unseen(open_, (0.0, 10.0), [1.25, 2.8, 3.1, 4.0]) == [(2.8, 3.1), (3.1, 3.5), (5.0, 6.0)]
-    assert unseen(open_, (0.0, 10.0), []) == open_
+    assert not_simulated(open_, (0.0, 10.0), [1.25, 2.8, 3.1, 4.0]) == [(2.8, 3.1), (3.1, 3.5), (5.0, 6.0)]
+    assert not_simulated(open_, (0.0, 10.0), []) == open_
 
 
 def test_gaps_of_a_thousandth_are_not_simulated():
