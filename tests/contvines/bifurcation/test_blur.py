@@ -46,7 +46,7 @@ def test_a_point_whose_error_is_longer_than_the_interval_is_not_told(error, told
         return [replace(e, error=error) if e.kind == "branch-point" else e for e in found]
 
     monkeypatch.setattr(SegmentSearch, "search", vaguely)
-    monkeypatch.setattr("contvines.bifurcation.consistency.inexact", lambda segment, event: False)
+    monkeypatch.setattr("contvines.bifurcation.consistency.is_inexact", lambda segment, event: False)
     graph = cv.diagram(
         cv.AlgebraicProblem(lambda u, p: u * (u - p), [0.0], -0.7), within=(-1.0, 1.0), depth=0
     )
