@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from ..continuation.settings import hinted
+from ..graph.table import with_unit
 from ..shared.figures import PanelOptions
 from ..shared.numbers import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
@@ -106,6 +107,8 @@ class Circles:
         Motion on which a simulation a little beyond the last circle settles: "value", "kind" and, for a locked motion, "periods".
     notation : dict
         Axis labels by name of parameter or coordinate.
+    units : dict
+        Units by name of parameter; coordinates and radii are the numbers of the computation.
     """
 
     label: str
@@ -120,6 +123,7 @@ class Circles:
     ended: str = ""
     beyond: dict[str, Any] = field(default_factory=dict)
     notation: dict[str, str] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.circles)
@@ -159,6 +163,7 @@ class Circles:
             "circles": [circle.to_dict() for circle in self.circles],
             "ended": self.ended,
             "beyond": self.beyond,
+            **({"units": self.units} if self.units else {}),
         }
 
     def __str__(self) -> str:
@@ -176,7 +181,8 @@ class Circles:
         )
 
     def _table(self) -> Table:
-        head = (self.parameter, "radius", "normal form", "turns per period", "simulated", "replay", "stable")
+        name = with_unit(self.parameter, self.units.get(self.parameter))
+        head = (name, "radius", "normal form", "turns per period", "simulated", "replay", "stable")
         value, turns = (
             _figures_of([c.value for c in self.circles]),
             _figures_of([c.rotation for c in self.circles]),

@@ -82,6 +82,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     at_point = section(point.value)
     solved = tuple(_circle(section, curve, birth) for curve in found)
     beyond = _motion_beyond(section, found, birth) if found else {}
+    unit = (point.problem.describe().get("units") or {}).get(point.parameter)
     return Circles(
         point.label,
         point.parameter,
@@ -95,6 +96,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         ended,
         beyond,
         notation_of(point.problem),
+        {point.parameter: unit} if unit else {},
     )
 
 

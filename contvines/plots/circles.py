@@ -101,5 +101,5 @@ def _sizes(radius: Axes, rotation: Axes, circles: Circles, colors: np.ndarray) -
     radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
     radius.set_ylabel("radius")
     rotation.plot(values, np.append(circles.rotation, circles.rotations), color="#7c3aed", **look)
-    across = axis_label(circles.parameter, notation=circles.notation)
+    across = axis_label(circles.parameter, circles.units.get(circles.parameter), circles.notation)
     rotation.set(xlabel=across, ylabel="turns per period")

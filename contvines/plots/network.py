@@ -13,7 +13,7 @@ from ..continuation.settings import hinting
 from ..graph import Graph
 from ..graph.table import short_word
 from ..shared.figures import Size, Style, drawing, finish_layout
-from ..shared.numbers import figures_in
+from ..shared.numbers import figures
 from .labels import Raster
 
 COLUMNS = 6  # largest number of columns side by side
@@ -170,5 +170,5 @@ def _caption(branch: Branch) -> str:
     word = short_word(about["word"] or about.get("name", ""), 18) if "word" in about else ""
     periods = about.get("periods")
     named = "  ".join([branch.label, *filter(None, [word, f"k={periods}" if periods else ""])])
-    span = " to ".join(dict.fromkeys(map(figures_in(branch.range, branch.range), branch.range)))
+    span = " to ".join(dict.fromkeys(figures(end, float(np.ptp(branch.range))) for end in branch.range))
     return f"{named}\n{branch.parameter} {span}"

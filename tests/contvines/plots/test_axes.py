@@ -1,6 +1,7 @@
 """Every plot function draws on given axes and respects what the user asks of style, legend and size."""
 
 import itertools
+from dataclasses import replace
 from functools import cache, partial
 
 import matplotlib as mpl
@@ -140,6 +141,10 @@ def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(name, size)
 def test_an_atlas_over_another_measure_has_two_axes():
     upper, lower = plot_atlas(ATLAS, "u0").axes
     assert (upper.get_xlabel(), lower.get_xlabel()) == ("u0", "p")
+
+
+def test_circles_name_the_unit_of_the_parameter():
+    assert plot_circles(replace(circles(), units={"r": "Hz"})).axes[2].get_xlabel() == "r [Hz]"
 
 
 def legends_of(figure):

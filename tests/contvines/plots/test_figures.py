@@ -28,8 +28,7 @@ def test_portrait_asks_the_orbit_first():
 def test_network_has_a_box_per_branch_and_names_the_switches(graph):
     figure = plot_network(graph)
     texts = [t.get_text() for t in figure.axes[0].texts]
-    assert [t.split()[0] for t in texts[:3]] == ["B1", "B2", "B3"]
-    assert texts[3:] == ["BP1", "VG1"]
+    assert [t.split()[0] for t in texts] == ["B1", "B2", "B3", "BP1", "VG1"]
     figure.set_dpi(200)  # arrows end at their boxes at any resolution, the first time they are drawn
     once, twice = (figure.canvas.draw() or np.array(figure.canvas.buffer_rgba()) for _ in range(2))
     assert np.all(once == twice)
