@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
 SIZE, REPORT = (10.0, 4.0), (9.0, 3.4)  # inches
+HEADROOM = 1.1  # upper end of the vertical axis, relative to the largest number
 PART = 0.6  # height of the start-up's picture, relative to the others
-ROOM = 1.3  # upper end of the vertical axis relative to the largest number, which leaves space for the legend
 
 
 def recommend(
@@ -145,20 +145,16 @@ def _target(text: str, study: Study) -> float:
 
 
 def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
-    """Draw both panels, one above the other in a narrow picture; only the first one if nothing was chosen."""
-    from ..plots.legends import NARROW
-    from ..shared.figures import new_figure, settle, styled, thin_ticks
+    """Draw both panels, one above the other in a narrow picture, with a legend below; only the first panel if nothing was chosen."""
+    from ..shared.figures import legend_below, panels
 
-    with styled():
-        figure = new_figure(figsize=size or SIZE)
-        count = 2 if found.curves else 1
-        columns = 1 if figure.get_figwidth() < NARROW else count
-        panels = figure.subplots(count // columns, columns, squeeze=False).ravel()
-        draw_places(panels[0], found)
-        if found.curves:
-            draw_responses(panels[1], found)
-        settle(figure)
-        thin_ticks(*panels)
+    arranged = ({"mosaic": "ab"}, {"mosaic": "a;b"}) if found.curves else ({"mosaic": "a"},)
+    with panels(None, (), "", size or SIZE, None, *arranged) as (figure, drawn):
+        draw_places(drawn[0], found)
+        if len(drawn) > 1:
+            draw_responses(drawn[1], found)
+        entries = {str(h.get_label()): h for axes in drawn for h in axes.get_legend_handles_labels()[0]}
+        legend_below(drawn[0], list(entries.values()), True)
     return figure
 
 
@@ -169,6 +165,8 @@ def _label(found: Recommendation, name: str, text: str) -> str:
 
 def draw_places(axes: Axes, found: Recommendation) -> None:
     """Draw the worst response over the parameter that is chosen."""
+    from orbits.design.references import NAMES
+
     from ..plots.style import REFERENCES
 
     first = [p for p in found.places if p.samples < found.most or found.most == 1]
@@ -190,10 +188,10 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
             )
     hidden = [p.value for p in found.places if p.unknown]
     if hidden:
-        axes.plot(hidden, [0.0] * len(hidden), "x", color=GREY, label="not known")
+        axes.plot(hidden, [0.0] * len(hidden), "x", color=GREY, label="not known", clip_on=False)
     for kind, (value, _) in found.compared.items():
         color, dashes = REFERENCES[kind]
-        axes.axhline(value, color=color, linestyle=dashes, linewidth=1.2, label=kind)
+        axes.axhline(value, color=color, linestyle=dashes, linewidth=1.2, label=NAMES[kind])
     if found.value is not None and found.chosen is not None:
         axes.axvspan(
             *found.tolerance, color=RED, alpha=0.1, lw=0, label=f"costs less than {100 * found.cost:g} %"
@@ -206,10 +204,8 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
     axes.set(
         xlabel=_label(found, found.name, found.name.replace("_", "-")),
         ylabel=_label(found, "peak", "largest response"),
-        ylim=(0.0, None),
+        ylim=(0.0, HEADROOM * axes.dataLim.y1 or None),
     )
-    axes.margins(y=0.1)
-    axes.legend(loc="best", fontsize="x-small")
 
 
 def draw_responses(axes: Axes, found: Recommendation) -> None:
@@ -233,11 +229,9 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
     axes.set(
         xlabel=_label(found, found.parameter, found.parameter.replace("_", " ")),
         ylabel=_label(found, "peak", "largest displacement"),
-        ylim=(0.0, ROOM * max(max(curve.y) for curve in found.curves)),
+        ylim=(0.0, HEADROOM * axes.dataLim.y1),
         xlim=found.within,
     )
-    columns = min(2, max(1, len(axes.get_legend_handles_labels()[0]) // 2))
-    axes.legend(loc="upper center", ncols=columns, fontsize="x-small", handlelength=2.1, columnspacing=0.5)
 
 
 def report_pictures(found: Recommendation) -> list[tuple[Figure, str]]:
