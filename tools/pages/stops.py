@@ -11,13 +11,17 @@ import numpy as np
 
 from orbits.contacts import HIT
 from orbits.flows.page.stepper import Stepper
-from tests.orbits.declared.test_simulation import rattler
+from orbits.symbols import sin
+from tests.orbits.declared.oscillators import FLOOR, LEFT, RIGHT, oscillator
 
 
 def farthest(impacts: int, forcing: float = 5.0, frequency: float = 1.1) -> tuple[float, int]:
     """Return the largest |x| and the number of events in a simulation with this number of impacts between stops at -1 and 1."""
-    machine = rattler()
-    stepper = Stepper(machine, machine.vector({"forcing": forcing, "frequency": frequency}))
+    machine = oscillator(
+        lambda s, phase, p, contact: forcing * sin(phase) + contact.floor, RIGHT, LEFT, FLOOR,
+        parameters={"frequency": frequency, "friction": 0.3, "restitution": 0.7, "gap": 1.0},
+    )  # fmt: skip
+    stepper = Stepper(machine, machine.vector())
     stepper.start(np.array([0.3, 0.1]), 0.0)
     e, far, hits, events = machine.equations, 0.0, 0, 0
     numbers, watches = {}, {}
