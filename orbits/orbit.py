@@ -317,7 +317,7 @@ def tends(close: float, further: Callable[[], float]) -> bool:
     `close` is its distance from the border orbit. `further`, called only if needed, returns the distance of the same branch's orbit further
     away from the border: an orbit that is merely similar keeps its distance.
     """
-    return close < BORDERING.together or (close < CLOSE and close < SHRINKS * further())
+    return close < BORDERING.simultaneous or (close < CLOSE and close < SHRINKS * further())
 
 
 def gap(border: Orbit, near: Orbit) -> float:

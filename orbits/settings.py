@@ -57,7 +57,7 @@ class Events:
     ----------
     zero : float
         Differences of gaps and phases below this, relative to 1 + size of the states, are roundoff.
-    together : float
+    simultaneous : float
         A quantity below this, relative to 1 + its rate, vanishes together with another one; hops below this height have accumulated.
     touch : float
         Rate below which a surface is touched and not crossed; a slower impact vanishes.
@@ -69,18 +69,18 @@ class Events:
         Clock after which a quantity that starts from zero without a rate exceeds roundoff.
     at_end : float
         Share of a flight at its ends: a guard that vanishes there vanishes at that end.
-    still : float
+    at_rest : float
         Range of a state that does not move; also the largest shift over a period of a motion that returns.
     """
 
     zero: float = 1e-12
-    together: float = 1e-11
+    simultaneous: float = 1e-11
     touch: float = 1e-7
     slow: float = 1e-6
     hop: float = 1e-2
     leave: float = 1e-5
     at_end: float = 1e-9
-    still: float = 1e-8
+    at_rest: float = 1e-8
 
 
 @dataclass(frozen=True)
@@ -110,16 +110,16 @@ class Bordering:
     ----------
     sizes : tuple of tuples of float
         Sizes of the component that grows beyond a border, from large to small: each tuple is one attempt.
-    beside : tuple of float
+    distances : tuple of float
         Distances from a border at which the branch that ends there is solved.
-    away : tuple of float
+    simulated_at : tuple of float
         Distances in the parameter at which simulation begins, the second if the first finds nothing; near the slip of a rest only the second.
     regular, turning, slipping : tuple of float
         Distances at which a motion is solved: with regular equations at the border; on a branch that turns back close to it; and for the
         stick-slip motion near rest.
-    together : float
+    simultaneous : float
         Margins, speeds and durations below this vanish together; motions that differ by less are the same.
-    shown : float
+    certain : float
         Margins below this may be zero: their signs are determined further away.
     unresolved : float
         Speed after an impact below which the next events cannot be resolved, because its square is roundoff.
@@ -136,13 +136,13 @@ class Bordering:
     """
 
     sizes: tuple[tuple[float, ...], ...] = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))
-    beside: tuple[float, float] = (1e-4, 1e-5)
-    away: tuple[float, float] = (1e-6, 1e-7)
+    distances: tuple[float, float] = (1e-4, 1e-5)
+    simulated_at: tuple[float, float] = (1e-6, 1e-7)
     regular: tuple[float, ...] = (1e-8, 1e-7, 1e-6)
     turning: tuple[float, ...] = (1e-5, 1e-6)
     slipping: tuple[float, ...] = (1e-4, 1e-3)
-    together: float = 1e-7
-    shown: float = 1e-8
+    simultaneous: float = 1e-7
+    certain: float = 1e-8
     unresolved: float = 1e-5
     slow: float = 1e-3
     placed: float = 1e-10
@@ -175,7 +175,7 @@ class Simulating:
     ----------
     nudge : float
         Small displacements: in differences, of the neighbour whose growth is measured, of the velocity between two values of a sweep.
-    whole : float
+    whole_period : float
         Forcing periods that differ by less from a whole number, or from a given time, are equal to it.
     returned, returned_page, returned_many : float
         Largest distance of two points of a motion that has returned; for integrated motions; for many motions simulated together.
@@ -197,13 +197,13 @@ class Simulating:
         Multipliers this close to the unit circle neither attract nor repel.
     settled : float
         Relative change of an oscillator that has settled, between two comparisons.
-    held : float
+    may_hold : float
         Friction that lacks less than this share of the forces may hold.
     resting : float
         Share of the space between walls; a motion that reaches less is at rest.
     steady : float
         Share of the displacement by which the displacements of a creeping motion may differ.
-    lost : float
+    lost_growth : float
         Growth factor used when a stick has made two neighbours equal.
     at_once : float
         Phase from a touch to the stick that follows it.
@@ -216,7 +216,7 @@ class Simulating:
     """
 
     nudge: float = 1e-7
-    whole: float = 1e-9
+    whole_period: float = 1e-9
     returned: float = 1e-6
     returned_page: float = 1e-5
     returned_many: float = 1e-8
@@ -229,10 +229,10 @@ class Simulating:
     falling: float = 1e-2
     neutral: float = 1e-6
     settled: float = 1e-13
-    held: float = 1e-9
+    may_hold: float = 1e-9
     resting: float = 1e-6
     steady: float = 1e-3
-    lost: float = 1e-3
+    lost_growth: float = 1e-3
     at_once: float = 1e-6
     late: float = 0.125
     lives: float = 4.0
@@ -255,7 +255,7 @@ class Replaying:
         Strength of an event from which a simulation starts safely.
     wild : float
         Multipliers above this amplify roundoff strongly within a period.
-    displaced, back : float
+    displaced, returned : float
         Distance of a start from a stable orbit, and distance at which it has returned; orbits are accurate to at least the first.
     nearer : tuple of (float, float)
         The same pairs for orbits that attract only from nearby.
@@ -277,7 +277,7 @@ class Replaying:
     definite: float = 1e-2
     wild: float = 1e3
     displaced: float = 1e-6
-    back: float = 1e-8
+    returned: float = 1e-8
     nearer: tuple[tuple[float, float], ...] = ((1e-8, 1e-9), (1e-10, 1e-8), (1e-11, 1e-8))
     beside_folds: tuple[float, ...] = (1e-7, 1e-8)
     shrunk: float = 1e-2

@@ -345,11 +345,11 @@ class Family:
         """Solve for a circle with enough points; return it (None if there is none), and whether the solution found is no smooth closed curve."""
         frame, before, curve = self.birth.frame, None, solve(self.section, guess, self.birth.frame, condition)
         while curve is not None:
-            worse = before is not None and LESS * before.tail < curve.tail and before.tail < CIRCLES.torn
+            worse = before is not None and LESS * before.tail < curve.tail and before.tail < CIRCLES.broken
             if worse or curve.tail < CIRCLES.smooth or len(curve.points) >= MOST:
                 curve = before if before is not None and worse else curve
-                missed = CIRCLES.apart * abs(first_harmonic(curve, frame))
-                torn = curve.tail > CIRCLES.torn or not between(self.section(curve.value), curve) < missed
+                missed = CIRCLES.image_distance * abs(first_harmonic(curve, frame))
+                torn = curve.tail > CIRCLES.broken or not between(self.section(curve.value), curve) < missed
                 return (None if torn else curve), torn
             before = curve
             finer = curve.finer(min(MOST, 2 * len(curve.points) - 1))

@@ -42,9 +42,9 @@ class CircleSettings:
         to the radius.
     beginning : float
         Family: smallest first amplitude, relative to the usual one.
-    smooth, torn : float
+    smooth, broken : float
         Ends: size of the last harmonics, relative to the first, below which a circle has enough points, and above which it is broken.
-    apart : float
+    image_distance : float
         Ends: largest distance of a circle's images from it, between its points and relative to its radius.
     displaced : float
         Simulation: displacement, relative to the radius, whose growth or decay decides the stability.
@@ -63,8 +63,8 @@ class CircleSettings:
     rough: float = 1e-4
     beginning: float = 1e-4
     smooth: float = 1e-7
-    torn: float = 3e-3
-    apart: float = 1e-3
+    broken: float = 3e-3
+    image_distance: float = 1e-3
     displaced: float = 1e-3
     settled: float = 1e-11
     far: float = 1e3

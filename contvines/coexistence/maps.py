@@ -115,7 +115,7 @@ class MapPopulation(StartsInBox):
                     cycle.append(step(cycle[-1][None])[0])
                 guess = np.array(cycle)
                 solved = self._solved(guess, p)
-                near = solved is not None and np.abs(solved - guess).max() < MAPS.apart * self.size
+                near = solved is not None and np.abs(solved - guess).max() < MAPS.spacing * self.size
                 points = solved if solved is not None and near else guess
                 points[np.abs(points) < ZERO * self.size] = 0.0
                 gaps = np.abs(x[:, None, :] - points[None]).max(axis=2).min(axis=1)
@@ -150,7 +150,7 @@ class MapPopulation(StartsInBox):
             for i in np.argsort(gaps, kind="stable")[:NEAREST]:
                 if not free[i]:
                     continue
-                free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > MAPS.apart * self.size
+                free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > MAPS.spacing * self.size
                 points = self._solved(run[i : i + period], p)
                 if points is not None and not any(self._same_cycle(points, cycle) for cycle in cycles):
                     cycles.append(points)

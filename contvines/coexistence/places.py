@@ -203,7 +203,7 @@ class Handover:
                 continue
             columns = [self.population.names.index(name) for name in section.names]
             low, high = self.population.box(p)[columns].T
-            shift = ATLAS.aside * (high - low) * np.cos(np.arange(len(point)))
+            shift = ATLAS.offset * (high - low) * np.cos(np.arange(len(point)))
             starts = np.zeros((2, len(self.population.names)))
             starts[:, columns] = np.clip(
                 [point + shift, point - shift], np.minimum(low, point), np.maximum(high, point)

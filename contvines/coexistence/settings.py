@@ -20,7 +20,7 @@ class AtlasSettings:
         Distance beyond a change of stability at which an atlas simulates.
     farthest : float
         Largest distance beyond the end of a stable stretch at which its motion is followed.
-    aside : float
+    offset : float
         Distance of starts from the motion that is followed, relative to the box of starts; without it a symmetric motion would stay symmetric.
     inside : float
         Smallest distance of a kicked start from the edge of the box, relative to the ray's length; and of a sample's probability from 0 and 1.
@@ -30,7 +30,7 @@ class AtlasSettings:
     narrow_chain: float = 1e-3
     beyond: float = 2e-3
     farthest: float = 1e-3
-    aside: float = 1e-3
+    offset: float = 1e-3
     inside: float = 1e-9
 
 
@@ -44,7 +44,7 @@ class MapSettings:
         Distance below which an iterate has returned to the first point of a cycle; step below which Newton's method has converged.
     near : float
         Distance from a known cycle below which a settled point belongs to it.
-    apart : float
+    spacing : float
         Distance between close returns of a chaotic motion beyond which each is tried as a guess of a cycle.
     far : float
         Distance from the box's centre beyond which a motion has escaped.
@@ -52,7 +52,7 @@ class MapSettings:
 
     returned: float = 1e-9
     near: float = 1e-5
-    apart: float = 1e-3
+    spacing: float = 1e-3
     far: float = 1e4
 
 

@@ -40,7 +40,7 @@ class Vanishing:
         For a test, relative to its terms or to its values at the ends of the segment.
     nothing : float
         A test that is smaller than this at both ends of a segment is zero along the whole segment, apart from rounding.
-    beside, straight : float
+    offset, straight : float
         Distance from a border (in the metric) at which the margins on both sides are compared, and the largest relative difference of the two changes
         of a margin that passes zero smoothly.
     image, loose : float
@@ -53,7 +53,7 @@ class Vanishing:
     double: float = 1e-4
     zero: float = 1e-6
     nothing: float = 1e-9
-    beside: float = 1e-4
+    offset: float = 1e-4
     straight: float = 0.1
     image: float = 1e-5
     loose: float = 1e-3

@@ -160,7 +160,7 @@ def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
     middle = engine.start(u, p)
     if middle is None:
         return index
-    around = [engine.beside(middle, step) for step in (VANISHING.beside, -VANISHING.beside)]
+    around = [engine.beside(middle, step) for step in (VANISHING.offset, -VANISHING.offset)]
     margins = [engine.margins(point.row) for point in (middle, *around) if point is not None]
     if len(margins) < 3:
         return index

@@ -335,7 +335,7 @@ class AlgebraicProblem(CallableProblem):
 
         with np.errstate(all="ignore"):
             if not rate(0.0, u).any():  # u is an equilibrium to the last bit, perhaps an unstable one
-                u = u + SIMULATION.beside * size * (-1.0) ** np.arange(len(u))
+                u = u + SIMULATION.offset * size * (-1.0) ** np.arange(len(u))
             speed = float((np.abs(rate(0.0, u)) / size).max())
             span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
             tolerances: dict[str, Any] = {"rtol": SIMULATION.relative, "atol": SIMULATION.absolute * size}
@@ -346,7 +346,7 @@ class AlgebraicProblem(CallableProblem):
                 x = solver.y
                 if solver.status == "failed" or not float((np.abs(x) / size).max()) < SIMULATION.far:
                     return "escapes", u
-                if float((np.abs(x - rest) / size).max()) > SIMULATION.still:
+                if float((np.abs(x - rest) / size).max()) > SIMULATION.at_rest:
                     rest, rest_time = x.copy(), solver.t
                 elif solver.t - rest_time > span:
                     return "equilibrium", x.copy()
@@ -382,7 +382,7 @@ def _same_attractor(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> b
     """Whether two entries of `simulated_attractors` are the same attractor."""
     if a["kind"] != b["kind"]:
         return False
-    return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < SIMULATION.beside * size).all())
+    return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < SIMULATION.offset * size).all())
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AlgebraicProblem | None:

@@ -312,7 +312,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         """
         if not evaluable:
             return self.trouble
-        for beyond in (0.0, DERIVATIVES.aside):
+        for beyond in (0.0, DERIVATIVES.tested_at):
             wrong = self.check(u + beyond * tangent[:-1], p + beyond * float(tangent[-1]))
             if wrong is not None:
                 return wrong
@@ -337,11 +337,11 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
                 if found.kind == "jump":
                     return f"the equations jump {place}"
                 return f"the equations have a kink {place}; switches= would select their pieces"
-        if self.noise > DERIVATIVES.felt:
+        if self.noise > DERIVATIVES.noticed:
             j = int(np.argmax(self.functions.noise))
             return (
                 f"{self.functions.name} has noise of {self.functions.noise[j]:.1g} in row {j}, which moves the solution by "
-                f"{self.noise:.1g} of its size{' or more' if self.noise >= DERIVATIVES.believed else ''}: it may be too much for a branch to be followed"
+                f"{self.noise:.1g} of its size{' or more' if self.noise >= DERIVATIVES.largest else ''}: it may be too much for a branch to be followed"
             )
         return ""
 

@@ -339,7 +339,7 @@ class Differentiated:
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         """Whether the complex step works: compare it with differences along a random direction next to the start."""
         rng = np.random.default_rng(0)
-        u = u + DERIVATIVES.aside * self.lengths * rng.standard_normal(len(u))
+        u = u + DERIVATIVES.tested_at * self.lengths * rng.standard_normal(len(u))
         direction = self.lengths * rng.standard_normal(len(u))
         slope = 0.7 * self.parameter_length(u, p)
         try:

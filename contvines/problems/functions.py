@@ -144,7 +144,7 @@ def difference_text(one: np.ndarray, other: np.ndarray) -> str:
     """Return a message if two evaluations at the same arguments differ by more than small noise; else an empty string."""
     one, other = one.reshape(-1), other.reshape(-1)
     differences = np.abs(one - other)
-    if not (differences > DERIVATIVES.felt * np.abs(one)).any():
+    if not (differences > DERIVATIVES.noticed * np.abs(one)).any():
         return ""
     i = int(np.nanargmax(differences))
     return (

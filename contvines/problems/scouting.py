@@ -280,7 +280,7 @@ class Scout:
         self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, response)
         distance = float((np.abs(step[:-1]) / self.scale).max())
         if np.isfinite(distance) and distance > DERIVATIVES.roundoff:
-            self.noise = min(distance, DERIVATIVES.believed)
+            self.noise = min(distance, DERIVATIVES.largest)
 
     def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
         """Which entries of a tangent are not rounding errors: they do not change if another border is used."""

@@ -22,7 +22,7 @@ class DerivativeSettings:
         Derivatives: relative distance from differences above which the complex step, or a given derivative, counts as wrong.
     faint : float
         Derivatives: size of a row, relative to the largest one, below which it counts as zero.
-    aside : float
+    tested_at : float
         Derivatives: distance from the start, in lengths of the function, at which derivatives are tested: the start itself may be a special point.
     spacing : float
         Noise: distance between the first samples, in lengths of the function; each further table is a thousand times closer.
@@ -30,8 +30,8 @@ class DerivativeSettings:
         Noise: steps above this part of a function's change count as steep pieces, not as noise.
     brief : float
         Time: seconds up to which the cost of a call is not measured a second time.
-    felt, believed : float
-        Noise of a solution, relative to its size: above `felt` it may be the reason why a branch ends; estimates are limited to `believed`.
+    noticed, largest : float
+        Noise of a solution, relative to its size: above `noticed` it may be the reason why a branch ends; estimates are limited to `largest`.
     leap, kink : float
         Breaks: smallest jump of values, and smallest change of slopes, relative to the change of a row.
     """
@@ -42,12 +42,12 @@ class DerivativeSettings:
     mixed: float = 1e6
     agree: float = 1e-6
     faint: float = 1e-9
-    aside: float = 1e-3
+    tested_at: float = 1e-3
     spacing: float = 1e-6
     steep: float = 1e-4
     brief: float = 1e-4
-    felt: float = 1e-6
-    believed: float = 1e-4
+    noticed: float = 1e-6
+    largest: float = 1e-4
     leap: float = 1e-6
     kink: float = 1e-3
 
@@ -117,16 +117,16 @@ class SimulationSettings:
     ----------
     relative, absolute : float
         Error tolerances of the integrator.
-    beside : float
+    offset : float
         Offset of a start that is itself an equilibrium; largest distance between equal equilibria.
-    still, far : float
+    at_rest, far : float
         Largest movement of a motion at rest; distance from the origin at which a motion has escaped.
     """
 
     relative: float = 1e-8
     absolute: float = 1e-10
-    beside: float = 1e-3
-    still: float = 1e-5
+    offset: float = 1e-3
+    at_rest: float = 1e-5
     far: float = 1e4
 
 
@@ -142,21 +142,21 @@ class LinearSettings:
         Largest condition number of a Jacobian whose inverse is used as the reference for its eigenvalues.
     eigenvalues : float
         Relative accuracy of ARPACK's eigenvalues; residual of the trial solution that decides whether a matrix is written out.
-    refined, enough, kept : float
+    refined, enough, reused : float
         Direct solvers: residual at which refinement stops; largest accepted residual; the same with the factors of an earlier Jacobian.
     gain : float
         Direct solvers: factor by which each refinement with the factors of an earlier Jacobian must reduce the residual.
     border : float
         Direct solvers: relative size of the last row if the whole bordered matrix is factorised; a Schur complement below this part of its terms is a
         rounding error.
-    shift, beside : float
+    shift, offset : float
         Direct solvers: shift of a singular matrix, and distance of the shift of inverse iteration from its eigenvalue; relative to the largest entry.
     iterated, tolerated, growth : float
         Krylov methods: requested residual; largest accepted residual where rounding prevents a smaller one; addition to it for each unit of the ratio of
         the solution to the right-hand side.
     rough : float
         Krylov methods: requested residual of the distance from a singular matrix.
-    aside : float
+    singular : float
         Krylov methods: shift of a matrix that is singular to the last bit.
     """
 
@@ -165,16 +165,16 @@ class LinearSettings:
     eigenvalues: float = 1e-8
     refined: float = 1e-13
     enough: float = 1e-9
-    kept: float = 1e-11
+    reused: float = 1e-11
     gain: float = 1e-2
     border: float = 1e-8
     shift: float = 1e-14
-    beside: float = 1e-10
+    offset: float = 1e-10
     iterated: float = 1e-11
     tolerated: float = 1e-4
     growth: float = 1e-12
     rough: float = 1e-6
-    aside: float = 1e-9
+    singular: float = 1e-9
 
 
 DERIVATIVES = DerivativeSettings()

@@ -293,7 +293,7 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
     tally = _Tally(simulator)
     if found.recurrent:
         observed = tally.go_on(
-            (found.periods or 1) + SIMULATING.whole, INSTANTS
+            (found.periods or 1) + SIMULATING.whole_period, INSTANTS
         )  # so that the first event is met again
         speed = observed.impact_speed if found.impacts else 0.0
         return replace(observed, impact_speed=speed, impacts_per_period=found.impacts_per_period)
@@ -371,7 +371,7 @@ class _Tally:
 
     def go_on(self, length: float, per_period: int = 0) -> Observation:
         """Simulate until `length` periods have been observed in all."""
-        while self.moving and self.seen.periods < length - SIMULATING.whole:
+        while self.moving and self.seen.periods < length - SIMULATING.whole_period:
             piece = min(PIECE, length - self.seen.periods)
             run = self.simulator.run(piece, int(PERIOD_EVENTS * (piece + 1.0)))
             self.moving = run.lasted > 0.0 and not run.stopped
@@ -420,7 +420,7 @@ class Modulation(NamedTuple):
 
 def modulation(run: Trajectory) -> Modulation:
     """Modulation over the whole forcing periods of a trajectory."""
-    periods = max(1, int(run.lasted + SIMULATING.whole))
+    periods = max(1, int(run.lasted + SIMULATING.whole_period))
     clocks, sizes = run.responses(SAMPLES)
     place = ((clocks - run.clocks[0]) / TWO_PI).astype(int)
     tops = np.full(periods, -np.inf)

@@ -133,14 +133,14 @@ def _simpler_continuations(problem: CycleProblem, u: np.ndarray, p: float) -> It
 def _real_part(
     problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int
 ) -> list[tuple[np.ndarray, float] | None]:
-    """Solutions (u, p) on the branch's real side, at each of the distances `BORDERING.beside` from the border; None where Newton's method fails.
+    """Solutions (u, p) on the branch's real side, at each of the distances `BORDERING.distances` from the border; None where Newton's method fails.
 
     Both directions are solved: if a stick vanishes in a flight, the branch turns back at the border, so that its tangent does not show the
     real side.
     """
     tangent = tangent / float(np.abs(tangent).max())
     sides, found = (1.0, -1.0), []
-    for length in BORDERING.beside:
+    for length in BORDERING.distances:
         best = None
         for side in sides:
             ahead, q = u + side * length * tangent[:-1], p + side * length * float(tangent[-1])
@@ -158,7 +158,7 @@ def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple
     """Yield attractors that a simulation reaches from the border orbit at parameter values close to the border, on both sides."""
     orbit = problem.orbit(u, p)
     own_key = _key(orbit)
-    for away, side in product(BORDERING.away, (1.0, -1.0)):
+    for away, side in product(BORDERING.simulated_at, (1.0, -1.0)):
         q = p + side * away * parameter_unit(problem, p)
         found, _ = settled(orbit, problem.values(q))
         if found is None or (problem.forced and found.periods % problem.periods) or _key(found) == own_key:
@@ -277,9 +277,9 @@ def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
     p = float(point.value)
     unit = parameter_unit(problem, p)
     for side in (-1.0, 1.0):
-        q = p + side * BORDERING.away[-1] * unit
+        q = p + side * BORDERING.simulated_at[-1] * unit
         orbit = Orbit.at_rest(problem.model, problem.values(q))
-        beyond = Orbit.at_rest(problem.model, problem.values(p - side * BORDERING.away[-1] * unit))
+        beyond = Orbit.at_rest(problem.model, problem.values(p - side * BORDERING.simulated_at[-1] * unit))
         if orbit.margin > 0.0 >= beyond.margin:  # a rounding error counts as zero
             other = problem.sibling(orbit.word, 1, orbit.symmetric)
             direction = np.zeros(other.dimension + 1)
@@ -320,12 +320,14 @@ def _contact(orbit: Orbit, index: int) -> str:
 def _nearly_vanishing(orbit: Orbit) -> str:
     """Description of other events that nearly vanish at the border; empty if there are none."""
     margins, word = orbit.relative_margins, orbit.word
-    speeds = [m.value for m in margins if m.kind == "approach" and BORDERING.shown < m.value < BORDERING.slow]
+    speeds = [
+        m.value for m in margins if m.kind == "approach" and BORDERING.certain < m.value < BORDERING.slow
+    ]
     turns = [k for k in range(len(word)) if word.letter(k).kind == TURN]
     gaps = [
         m.value
         for m in margins
-        if m.kind == "wall" and m.segment in turns and BORDERING.shown < m.value < BORDERING.slow
+        if m.kind == "wall" and m.segment in turns and BORDERING.certain < m.value < BORDERING.slow
     ]
     if speeds:
         return (
@@ -340,7 +342,7 @@ def _nearly_vanishing(orbit: Orbit) -> str:
     values = {(m.kind, m.segment): m.value for m in margins}
     for place in range(len(word)):
         pair = values.get(("duration", place), np.inf), values.get(("stick", place), np.inf)
-        if word.letter(place).kind == STICK and min(pair) > BORDERING.shown and max(pair) < BORDERING.slow:
+        if word.letter(place).kind == STICK and min(pair) > BORDERING.certain and max(pair) < BORDERING.slow:
             return (
                 f"a stick that lasts {pair[0]:.1e} of the machine's own time, with {pair[1]:.1e} of its friction in reserve, is about to "
                 "vanish as well: motions between the two borders cannot be resolved"
@@ -353,7 +355,7 @@ def _simulated_outcomes(problem: CycleProblem, orbit: Orbit, p: float) -> list[s
     outcomes = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):
         found, kind = settled(
-            orbit, problem.values(p + side * BORDERING.away[0] * parameter_unit(problem, p))
+            orbit, problem.values(p + side * BORDERING.simulated_at[0] * parameter_unit(problem, p))
         )
         if found is None:
             outcomes[name] = ENDS.get(kind, kind)
@@ -370,7 +372,7 @@ def piled_up(orbit: Orbit, approaches: np.ndarray) -> bool:
     """Whether an impact of the border orbit rebounds so slowly that the events after it cannot be resolved."""
     hits = [place for place in range(len(orbit.word)) if orbit.word.letter(place).kind == HIT]
     return any(
-        speed > BORDERING.shown and orbit.flow.restitution(orbit, place) * speed < BORDERING.unresolved
+        speed > BORDERING.certain and orbit.flow.restitution(orbit, place) * speed < BORDERING.unresolved
         for speed, place in zip(approaches.tolist(), hits)
     )
 

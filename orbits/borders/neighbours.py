@@ -117,7 +117,7 @@ def proposals(border: Border) -> Iterator[tuple[BranchAtBorder, str]]:
     problem, orbit, p = border.problem, border.orbit, border.p
     values = margins_of(problem, border.u, p)
     vanishing = [
-        j for j in range(problem.n_margins) if j != border.margin and abs(values[j]) < BORDERING.together
+        j for j in range(problem.n_margins) if j != border.margin and abs(values[j]) < BORDERING.simultaneous
     ]
     for first in border.edits:
         chosen = [first]
@@ -199,14 +199,14 @@ class GrowingQuantity(NamedTuple):
             else:
                 u[following] = u[place] + wanted
         else:
-            near = BORDERING.together * parameter_unit(other, p)
+            near = BORDERING.simultaneous * parameter_unit(other, p)
             speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
             border[place : place + n], border[size] = slopes, by_parameter
             u[place : place + n] += push * (wanted - speed) / float(slopes @ push)
             if (
                 len(change.events) > 1
                 and other.word.letter(first + 1).kind == STICK
-                and abs(speed) > BORDERING.together
+                and abs(speed) > BORDERING.simultaneous
             ):  # the time until it comes to rest is proportional to its speed
                 clock = place if not other.forced else following
                 duration = u[following] - u[place] if other.forced else u[place]
@@ -246,18 +246,18 @@ class RewrittenOrbit:
             return self.stated
         if not len(other.word):
             return None
-        orbit, near = other.orbit(guess, p), BORDERING.together * parameter_unit(other, p)
+        orbit, near = other.orbit(guess, p), BORDERING.simultaneous * parameter_unit(other, p)
         for place in range(other.length):
             kind = other.word.letter(place).kind
             if (
                 kind == HIT
-                and abs(other.equations.approach(guess, p, place, near).speed) < BORDERING.together
+                and abs(other.equations.approach(guess, p, place, near).speed) < BORDERING.simultaneous
             ):
                 grows = Grows.SPEED
             elif (
                 kind == STICK
                 and place + 1 < other.length
-                and abs(orbit.durations[place]) < BORDERING.together
+                and abs(orbit.durations[place]) < BORDERING.simultaneous
             ):
                 grows = Grows.GAP
             else:
@@ -340,15 +340,15 @@ def _begins_at(border: Orbit, growing: GrowingQuantity, found: list[SizedSolutio
     values = margins_of(other, near.u, near.p)
     if values.min() < REAL:
         return False
-    undecided = np.abs(values) < BORDERING.shown
+    undecided = np.abs(values) < BORDERING.certain
     for held in growing.outwards(found):
         second, size = second or held, held.size
         if not undecided.any():
             break
         values = margins_of(other, held.u, held.p)
-        if np.any(undecided & (values < -BORDERING.shown)):
+        if np.any(undecided & (values < -BORDERING.certain)):
             return False
-        undecided &= values < BORDERING.shown
+        undecided &= values < BORDERING.certain
     if size < GROWING.first and np.any(undecided & (values < REAL)):
         return False  # no solution at a size where their sign is certain
     further = second or near
@@ -395,7 +395,7 @@ def _solved_both_sides(
             q = p + side * away * unit
             ahead = at_border + (q - p) * tangent[:-1]
             u, _, residual, along = newton(other.equations, ahead, q)
-            astray = np.abs(u - ahead).max() > ASTRAY * np.abs(ahead - at_border).max() + BORDERING.shown
+            astray = np.abs(u - ahead).max() > ASTRAY * np.abs(ahead - at_border).max() + BORDERING.certain
             if residual < SOLVING.residual and not astray:
                 sides.append((float(margins_of(other, u, q).min()), u, q, side * along))
         if sides:

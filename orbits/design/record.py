@@ -131,7 +131,7 @@ def recorded(
             "a recorded motion of the base is followed for level cavities only: use slope = 0"
         )
     if tail > 0.0:
-        times = np.append(times, [times[-1] + SIMULATING.whole, times[-1] + tail])
+        times = np.append(times, [times[-1] + SIMULATING.whole_period, times[-1] + tail])
         acceleration = np.append(acceleration, [0.0, 0.0])
     eps, r = numbers["mass_ratio"], numbers["restitution"]
     steps = np.maximum(np.ceil(np.diff(times) / (0.02 * math.pi)), 1).astype(np.int64)

@@ -99,7 +99,7 @@ class Trajectory(ABC, Generic[ModelOf]):
             If a clock lies outside the run.
         """
         first, last = float(self.clocks[0]), self.finish
-        slack = SIMULATING.whole * max(1.0, abs(last))
+        slack = SIMULATING.whole_period * max(1.0, abs(last))
         if clocks.size and (clocks.min() < first - slack or clocks.max() > last + slack):
             raise ValueError(
                 f"phases from {clocks.min():g} to {clocks.max():g} leave the run, which lasts "

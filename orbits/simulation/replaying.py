@@ -190,7 +190,7 @@ def _largest_difference(
     try:
         begin()
         start_time = simulator.time
-        run = simulator.run(float(times[-1]) / TWO_PI + SIMULATING.whole, most)
+        run = simulator.run(float(times[-1]) / TWO_PI + SIMULATING.whole_period, most)
         positions = run.coordinates(start_time + times / TWO_PI)[:, columns]
     except (SimulationError, ValueError):
         return math.inf
@@ -367,7 +367,7 @@ def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
         simulator.skip(wait * periods)
         return _nearest(simulator, word, wanted, periods)
 
-    displaced, back = REPLAYING.displaced, REPLAYING.back
+    displaced, back = REPLAYING.displaced, REPLAYING.returned
     tries = ((displaced, back), *REPLAYING.nearer)
     if any(distance_after(size, nodes)[0] < near for size, near in tries):
         return True

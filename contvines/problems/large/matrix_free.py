@@ -162,7 +162,7 @@ def iterate(
         if not np.any(sides[:, k]):
             continue
         guess = _scaled_tangent(tangent, border, sides) if k == 1 else None
-        for matrix.shift in (0.0, LINEAR.aside):
+        for matrix.shift in (0.0, LINEAR.singular):
             found, gap = matrix.solve(sides[:, k], guess, LINEAR.iterated)
             if solved(gap, matrix.growth):
                 break
@@ -231,7 +231,7 @@ def nearest_eigenvalues(data: Equations, work: Linearised) -> np.ndarray:
     """Return the eigenvalues of F_u nearest to zero, relative to the sizes of rows and unknowns; a singular F_u is shifted first."""
     rows, units = data.sizes()
     values = np.zeros(0)
-    for shift in (0.0, LINEAR.aside):
+    for shift in (0.0, LINEAR.singular):
         inverse = Inverse(data, work, shift)
         values = nearest_sparse(inverse, csc_array(diags_array(rows / units)), len(rows)) + shift
         if np.isfinite(values).all() and not inverse.unsolved:

@@ -141,7 +141,7 @@ def _product(work: SparseWork, border: np.ndarray, x: np.ndarray) -> np.ndarray:
 def _eliminate(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float] | None:
     """Block elimination with refinement, first with the factors of an earlier Jacobian, then with new ones; None if it is not accurate."""
     if work.factors is None and work.near is not None:
-        found = _refined(work, work.near, border, sides, LINEAR.gain, SWEEPS, LINEAR.kept)
+        found = _refined(work, work.near, border, sides, LINEAR.gain, SWEEPS, LINEAR.reused)
         if found is not None:
             return found
     factors = _factorise(work)
@@ -339,7 +339,7 @@ def eigenvectors(matrix: csc_array | Operator, values: np.ndarray) -> np.ndarray
     size = float(abs(matrix).max())
     columns = []
     for k, value in enumerate(np.asarray(values, dtype=complex)):
-        near = value + LINEAR.beside * size * (1.0 + 0.3j)
+        near = value + LINEAR.offset * size * (1.0 + 0.3j)
         factors = splu((matrix - near * sp.identity(n)).tocsc().astype(complex))
         vector = np.random.default_rng(k).standard_normal(n).astype(complex)
         for _ in range(3):

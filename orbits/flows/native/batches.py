@@ -172,7 +172,7 @@ def growth(engine: Stepper, state: np.ndarray, params: np.ndarray, count: int) -
         separation = other[drawn_back] - state[drawn_back]
         size = math.sqrt(float(separation @ separation))
         if size == 0.0:  # both motions stick and have become equal: separate them again
-            ratios[k] = SIMULATING.lost
+            ratios[k] = SIMULATING.lost_growth
             other[RATE] = state[RATE] + distance
         else:
             ratios[k] = size / distance

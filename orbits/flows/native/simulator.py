@@ -134,7 +134,7 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         """
         most = int(PER_PERIOD * max(until - self.time + 1.0, 1.0))
         status = skip(self.engine, self.state, self.params, until, most)
-        if status == FAILED or not abs(self.time - until) < SIMULATING.whole:
+        if status == FAILED or not abs(self.time - until) < SIMULATING.whole_period:
             raise SimulationError(
                 f"the motion of {self.model.name!r} does not go on to {until:g} forcing periods"
             )
@@ -198,7 +198,7 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
             self._oscillator_settles()
             return True
         rest = self.model.rest
-        slips = rest.reserve(self.params, rest.solved(self.params)) <= -SIMULATING.held
+        slips = rest.reserve(self.params, rest.solved(self.params)) <= -SIMULATING.may_hold
         return None if slips or not self._oscillator_settles() else True
 
     def _oscillator_settles(self) -> bool:

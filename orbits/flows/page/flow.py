@@ -116,7 +116,7 @@ class PageFlow(Flow[Machine]):
         if len(motion.word):
             return "periodic"
         table = self.sample(motion, 50)
-        moves = any(np.ptp(table[name]) > EVENTS.still for name in motion.model.states)
+        moves = any(np.ptp(table[name]) > EVENTS.at_rest for name in motion.model.states)
         return "periodic" if moves else "stuck"
 
     def restitution(self, motion: Motion[Machine], place: int) -> float:

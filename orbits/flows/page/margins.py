@@ -30,7 +30,7 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
     table[:] = np.inf
     table[:, contacts + 1] = (end - begin) / data.clock_rate(work.numbers)
     drift = max((abs(work.drift[j]) for j in data.pinned), default=0.0)
-    if drift > EVENTS.still:  # the motion returns shifted, so it is no orbit
+    if drift > EVENTS.at_rest:  # the motion returns shifted, so it is no orbit
         table[:, contacts + 1] = -drift
     for values, guards, watch, places in data.guard_groups:
         m, count = len(places), len(guards)

@@ -218,7 +218,7 @@ class Stepper:
         size = 1.0 + np.abs(self.state).max()
         push = self._push_back(wall) if after * after < EVENTS.slow * size * size else 0.0
         if push < 0.0:
-            if before * before < EVENTS.together * abs(push) * size:
+            if before * before < EVENTS.simultaneous * abs(push) * size:
                 return self._hold(wall)
             rise = -after / push
             self._hop = rise if rise * self.clock_rate < EVENTS.hop else 0.0
@@ -258,7 +258,7 @@ class Stepper:
         self._let_go(wall, opening=rate > 0.0)
         push = self._push_back(wall)
         self.modes, self._fresh = modes, fresh
-        return push < 0.0 and rate * rate < EVENTS.together * abs(push) * (1.0 + np.abs(self.state).max())
+        return push < 0.0 and rate * rate < EVENTS.simultaneous * abs(push) * (1.0 + np.abs(self.state).max())
 
     def _rest(self, walls: list[int], near: float) -> None:
         """Remove the gap rates of walls that hold; each correction changes the other rates, so it is repeated."""
@@ -375,7 +375,7 @@ class Stepper:
 
     def _vanishing(self) -> list[Guard]:
         """Return the guards of turns and slips that happen now, and of walls that would have to pull."""
-        touch, same_instant = EVENTS.touch, EVENTS.together
+        touch, same_instant = EVENTS.touch, EVENTS.simultaneous
         return [
             guard
             for value, rate, guard in self._guards()

@@ -178,7 +178,7 @@ class Run:
             end = self._slide(q, s, Y0, Y1, target, left)
             fresh = False
             tau = left if end.outcome == _NEVER else end.tau
-            idle = idle + 1 if tau < EVENTS.together else 0
+            idle = idle + 1 if tau < EVENTS.simultaneous else 0
             if idle > 10000:
                 status = FAILED
                 break
