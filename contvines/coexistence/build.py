@@ -17,7 +17,7 @@ from ..graph.run import Run, WorkState
 from ..journal import Journal
 from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
 from ..problems.abilities import Population
-from .census import Counted, census, join, population_of
+from .census import CountedMotion, census, join, population_of
 from .effort import BUDGET, Effort
 from .places import Handover, scattered_value, unknown, unresolved, untested_values
 from .settings import ATLAS
@@ -198,7 +198,7 @@ class _Search:
     def __init__(self, run: Run, population: Population, seed: int, budget: int) -> None:
         self.run, self.population, self.seed = run, population, seed
         self.asked: list[float] = []
-        self.found: list[Counted] = []
+        self.found: list[CountedMotion] = []
         self.handover = Handover(run, population)
         separate = separate_run(run)
         self.effort = Effort(population, budget, lambda: run.cost + separate.cost)
@@ -229,7 +229,7 @@ class _Search:
         for counted in self.pieces(TRACED, found, 1):
             join(self.run, counted)
 
-    def simulated(self, p: float, starts: int, seed: int) -> list[Counted]:
+    def simulated(self, p: float, starts: int, seed: int) -> list[CountedMotion]:
         """Simulate starts at a value and return the motions that they reach."""
         self.run.tell(f"{starts} starts at {self.population.parameter} = {p:.6g}", p)
         counted = census(self.population, p, starts, seed, self.run.journal)

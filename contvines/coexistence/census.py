@@ -52,7 +52,7 @@ def population_of(thing: object, over: str | None = None, **parameters: float) -
 
 # ------------------------------------------------------------------ what starts settle on
 @dataclass
-class Counted:
+class CountedMotion:
     """A motion found by simulation.
 
     Attributes
@@ -70,7 +70,7 @@ class Counted:
     state: np.ndarray | None = None
 
 
-def census(population: Population, p: float, count: int, seed: int, journal: Journal) -> list[Counted]:
+def census(population: Population, p: float, count: int, seed: int, journal: Journal) -> list[CountedMotion]:
     """Draw starts, simulate them, and return the motions reached with their shares; a census in the journal is not simulated again.
 
     Parameters
@@ -88,7 +88,7 @@ def census(population: Population, p: float, count: int, seed: int, journal: Jou
 
 def motions_from(
     population: Population, p: float, starts: np.ndarray, key: str, journal: Journal
-) -> list[Counted]:
+) -> list[CountedMotion]:
     """Simulate given starts and return the motions reached, with share 0: chosen starts say nothing about shares.
 
     Parameters
@@ -109,15 +109,15 @@ def motions_from(
 
 def _settled(
     population: Population, p: float, starts_of: Callable[[], np.ndarray], key: str, journal: Journal
-) -> list[Counted]:
+) -> list[CountedMotion]:
     """Return the motions on which starts settle, with their shares, from the journal or by simulation of ``starts_of()``."""
 
-    def simulated() -> list[Counted]:
+    def simulated() -> list[CountedMotion]:
         motions, index, mirrored = population.settle(starts_of(), p)
         attractors = attractors_of(motions, index, mirrored, p)
-        return [Counted(a, m.problem, m.u, m.state) for a, m in zip(attractors, motions, strict=True)]
+        return [CountedMotion(a, m.problem, m.u, m.state) for a, m in zip(attractors, motions, strict=True)]
 
-    def recalled(record: Mapping[str, Any]) -> list[Counted] | None:
+    def recalled(record: Mapping[str, Any]) -> list[CountedMotion] | None:
         """Return the recorded motions; None if a problem needs user functions that are not available."""
         found = []
         for k, description in enumerate(record["problems"]):
@@ -128,7 +128,7 @@ def _settled(
             if description is not None and problem is None:
                 return None
             found.append(
-                Counted(Attractor(float(p), branch=None, **fields), problem, u, record.get(f"state{k}"))
+                CountedMotion(Attractor(float(p), branch=None, **fields), problem, u, record.get(f"state{k}"))
             )
         return found
 
@@ -138,7 +138,7 @@ def _settled(
 MEASURED = ("share", "mirror_share", "exponent", "error")
 
 
-def _record(found: Sequence[Counted]) -> dict[str, Any]:
+def _record(found: Sequence[CountedMotion]) -> dict[str, Any]:
     """Return the journal's record of a census."""
     record: dict[str, Any] = {
         "problems": [None if c.problem is None else dict(c.problem.describe()) for c in found]
@@ -202,7 +202,7 @@ def attractors_of(
 
 
 # ------------------------------------------------------------------ joined to a graph
-def locate(run: Run, counted: Counted) -> str | None:
+def locate(run: Run, counted: CountedMotion) -> str | None:
     """Return the label of the branch on which a motion lies (to solver accuracy); None if it lies on none."""
     if counted.problem is None:
         return None
@@ -210,13 +210,13 @@ def locate(run: Run, counted: Counted) -> str | None:
     return None if branch is None else branch.label
 
 
-def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
+def join(run: Run, found: Sequence[CountedMotion], depth: int = 0) -> int:
     """Set the branch label of each attractor; a motion that lies on no branch is first traced with the branches that leave it.
 
     Parameters
     ----------
     run : Run
-    found : sequence of Counted
+    found : sequence of CountedMotion
     depth : int
         Depth that the new roots count as: number of switches from the first branch.
 

@@ -19,7 +19,7 @@ from ..graph import Graph
 from ..graph.run import Run
 from ..graph.stretches import MEETING
 from ..problems.abilities import Population
-from .census import UNBRANCHED, Counted, motions_from
+from .census import UNBRANCHED, CountedMotion, motions_from
 from .settings import ATLAS
 
 # part of the interval to which the ends of a kind of motion without a branch are resolved
@@ -171,14 +171,14 @@ class Handover:
         found = [end for end in loose_ends(self.run.graph) if end.key not in self.done]
         return sorted(found, key=lambda end: (-end.width, end.value, end.side, end.label))
 
-    def follow(self, end: End) -> list[Counted]:
+    def follow(self, end: End) -> list[CountedMotion]:
         """Simulate just beyond an end, from starts to either side of the motion at the end; return the motions reached."""
         self.done.add(end.key)
         low, high = self.run.graph.within
         near, far = (
             min(part * end.width, ATLAS.farthest * (high - low)) for part in (JUST_BEYOND, BEYOND_CASCADE)
         )
-        found: list[Counted] = []
+        found: list[CountedMotion] = []
         for distance in dict.fromkeys((near, float(np.sqrt(near * far)), far, FARTHER * far)):
             if distance not in (near, far) and any(counted.attractor.kind != "slow" for counted in found):
                 continue

@@ -16,7 +16,7 @@ from ..graph.run import Run
 from ..journal import Part
 from ..problems.abilities import Population
 from ..problems.protocol import Problem
-from .census import Counted, Solution, add_root, recorded_or_computed
+from .census import CountedMotion, Solution, add_root, recorded_or_computed
 from .effort import Effort
 from .settings import ATLAS
 
@@ -44,7 +44,7 @@ class Windows:
         self.run, self.population, self.separate, self.effort = run, population, separate, effort
         self.left = 0  # number of searches not begun or not completed
 
-    def beside(self, found: Sequence[Counted]) -> None:
+    def beside(self, found: Sequence[CountedMotion]) -> None:
         """Search from the unstable cycles in chaotic motions.
 
         A window opens at a fold with a stable and an unstable cycle; the stable cycle doubles and ends in chaos, the unstable one
@@ -53,7 +53,7 @@ class Windows:
 
         Parameters
         ----------
-        found : sequence of Counted
+        found : sequence of CountedMotion
             Motions; those that are chaotic are used.
         """
         chaotic = [

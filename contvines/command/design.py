@@ -153,8 +153,8 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)
     b = np.linspace(0.35, 2.0, 201) * b0
     columns = (
-        Over(mu, "friction", mu0, r"friction $\mu$", 1.0),
-        Over(b, "cavity", b0, "half-width $b$ [mm]", MM),
+        Variation(mu, "friction", mu0, r"friction $\mu$", 1.0),
+        Variation(b, "cavity", b0, "half-width $b$ [mm]", MM),
     )
     size = size or (10.5, 6.6)
     small = size[0] < 6.0 or size[1] < 4.0
@@ -187,17 +187,17 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     return figure
 
 
-class Over(NamedTuple):
+class Variation(NamedTuple):
     """A quantity that varies: its values, its field of `Design`, the design's own value, an axis label, and the factor to the label's unit."""
 
     values: np.ndarray
     name: str
-    here: float
+    own_value: float
     label: str
     unit: float
 
 
-def _bounds(axes: Axes, design: Design, over: Over, room: float) -> None:
+def _bounds(axes: Axes, design: Design, over: Variation, room: float) -> None:
     """Draw the amplitudes of the oscillator between which two symmetric impacts exist, and those at which the absorber sticks.
 
     `room` is the space for a legend.
@@ -216,8 +216,8 @@ def _bounds(axes: Axes, design: Design, over: Over, room: float) -> None:
     _mark_own(axes, over)
 
 
-def _mark_own(axes: Axes, over: Over) -> None:
-    axes.axvline(over.here * over.unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
+def _mark_own(axes: Axes, over: Variation) -> None:
+    axes.axvline(over.own_value * over.unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
 
 
 def _round_levels(low: float, high: float) -> Sequence[float]:

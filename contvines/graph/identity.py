@@ -132,7 +132,7 @@ def turns_at(engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
     return near and engine.norm(gap) <= singular(tolerance)
 
 
-class Known:
+class KnownBranch:
     """A known branch in the register; the keys of its solutions are computed at first use.
 
     Parameters
@@ -170,11 +170,11 @@ class Register:
     """Known branches. A solution is compared only with branches that reach its parameter value and have its key."""
 
     def __init__(self) -> None:
-        self.known: list[Known] = []
+        self.known: list[KnownBranch] = []
 
     def add(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
         """Add a branch; ``special`` are the indices of its special points."""
-        self.known.append(Known(branch, engine, special))
+        self.known.append(KnownBranch(branch, engine, special))
 
     def find(self, problem: Problem, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
         """Return the known branch on which a solution lies, or None.

@@ -325,7 +325,7 @@ FIRST_OF_CYCLES = {
 }
 
 
-class Becomes(NamedTuple):
+class Parent(NamedTuple):
     """A more symmetric motion that a motion nearly equals: kind of the special point at which they separate, and its problem and unknowns, if there are any."""
 
     kind: str
@@ -333,7 +333,7 @@ class Becomes(NamedTuple):
     u: np.ndarray | None = None
 
 
-def simpler_motion(locus: LocusProblem, place: Place) -> Becomes | None:
+def simpler_motion(locus: LocusProblem, place: Place) -> Parent | None:
     """Return the more symmetric motion that the motion at a place of a locus nearly equals; None if there is none."""
     u, p, q = place
     whole = locus.at(q)
@@ -341,16 +341,16 @@ def simpler_motion(locus: LocusProblem, place: Place) -> Becomes | None:
         root = whole.root(u, p, VANISHING.loose)
         if root is None:
             return None
-        return Becomes("hopf" if root[0].spectrum == "flow" else root[0].flip_kind, *root)
+        return Parent("hopf" if root[0].spectrum == "flow" else root[0].flip_kind, *root)
     sizes = locus.sizes_at(*place)[:-2]
     for symmetry in whole.symmetries:
         if np.abs((image_of(symmetry, u, p) - u) / sizes).max() < VANISHING.image:
-            return Becomes(symmetry.kind, *(() if symmetry.root is None else symmetry.root(u)))
+            return Parent(symmetry.kind, *(() if symmetry.root is None else symmetry.root(u)))
     return None
 
 
 def beginning(
-    locus: LocusProblem, end: Solved, within: Interval, simpler: Becomes | None = None, ahead: float = 0.0
+    locus: LocusProblem, end: Solved, within: Interval, simpler: Parent | None = None, ahead: float = 0.0
 ) -> PlanePoint | None:
     """Find the point of codimension two at which a locus begins or ends because its motion becomes an equilibrium, a shorter or a symmetric motion.
 
@@ -364,7 +364,7 @@ def beginning(
         First or last point of the locus.
     within : (float, float)
         Interval of the second parameter.
-    simpler : Becomes, optional
+    simpler : Parent, optional
         The other motion, if it is known.
     ahead : float
         Estimated distance of the parameters from those of the point.
@@ -408,6 +408,6 @@ def vanishing(locus: LocusProblem, ends: Sequence[Solved], within: Interval) -> 
     rest = on_mesh(locus.at(last.q)).root(problem.resting(last.u, mean), last.p)
     if rest is None:
         return None
-    found = beginning(locus, ends[-1], within, Becomes("hopf", *rest), float(np.abs(behind).max()))
+    found = beginning(locus, ends[-1], within, Parent("hopf", *rest), float(np.abs(behind).max()))
     missed = np.inf if found is None else np.abs(np.subtract(found.value, last[1:]) - ahead).max()
     return found if missed <= np.abs(behind).max() else None  # the smallest cycles have few accurate digits

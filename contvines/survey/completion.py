@@ -10,7 +10,7 @@ import numpy as np
 
 from contvines.shared.motions import BAND, modulation_of
 
-from ..coexistence.census import Counted, add_root, census, join, locate, motions_from, run_on
+from ..coexistence.census import CountedMotion, add_root, census, join, locate, motions_from, run_on
 from ..coexistence.places import Handover
 from ..graph import Graph
 from ..graph.run import Limits, Run
@@ -90,10 +90,10 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     run = run_on(graph, int(settings.get("depth", 0)), bool(settings.get("virtual", False)), limits)
     for p in np.linspace(low, high, CLOSED):
         _add_untraced(run, population.closed(float(p)), float(p))
-    found_now: list[Counted] = []
+    found_now: list[CountedMotion] = []
     before, untraced = set(graph.branches), 0
 
-    def keep(found: list[Counted], depth: int) -> None:
+    def keep(found: list[CountedMotion], depth: int) -> None:
         nonlocal untraced
         for counted in found:
             if counted.u is None or locate(run, counted) is not None:
@@ -151,7 +151,7 @@ def _add_untraced(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: fl
                 run.tell(f"a motion in closed form at {p:.6g} is left: {refusal}", p)
 
 
-def _observed(population: Population, counted_motions: Sequence[Counted]) -> list[Unbranched]:
+def _observed(population: Population, counted_motions: Sequence[CountedMotion]) -> list[Unbranched]:
     """Return the settled motions that lie on no branch, with their measures."""
     found = []
     for counted in counted_motions:
