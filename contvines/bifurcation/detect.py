@@ -135,7 +135,7 @@ class Detector(SegmentSearch):
         ]
         return [replace(e, error=max(e.error, e.rounding)) for e in special], leaping
 
-    def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
+    def opening(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
         """Return the special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
 
         The beginning of the segment is not searched, as solutions there are those of a nearly singular system. It is searched if the evidence at its
@@ -157,7 +157,7 @@ class Detector(SegmentSearch):
         if start is None or first_start is None:
             return []
         segment = Segment(self.engine, start, first)
-        split = self.alone(segment, real)
+        split = self.inside_single(segment, real)
         if share < beyond:
             split = (beyond - share) / (1.0 - share), first_start
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)

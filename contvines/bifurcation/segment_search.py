@@ -338,7 +338,7 @@ class SegmentSearch:
             new |= inside.distances[:, -1] > self.engine.settings.shown
         return _Sample([s for s, _ in found], points, inside, found[new.argmax()] if new.any() else None)
 
-    def alone(self, segment: Segment, real: bool) -> Split | None:
+    def inside_single(self, segment: Segment, real: bool) -> Split | None:
         """Return the same as `inside` for a segment without neighbouring points.
 
         The middle of the segment is the third point of the parabolas that decide whether to search further.

@@ -210,14 +210,14 @@ def _searched_opening(
     detector: Detector, origin: Solved, start: Solved, real: bool
 ) -> tuple[list[Located], int]:
     """Return the special points of the opening, and the number of times that its end was moved nearer; 0 if that does not help."""
-    engine, whole = detector.engine, detector.beside(origin, start, real)
+    engine, whole = detector.engine, detector.opening(origin, start, real)
     events, times, point = whole, 0, start
     while events and events[-1].role is Role.LEAP:
         closer = nearer_start(engine, origin, point)
         if closer is None or engine.distance(origin, closer) <= engine.settings.resolution:
             return whole[:-1], 0
         times, point = times + 1, closer
-        events = detector.beside(origin, point, real)
+        events = detector.opening(origin, point, real)
     return events, times
 
 

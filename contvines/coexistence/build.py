@@ -244,7 +244,7 @@ class _Search:
     def for_cycles(self, values: Sequence[float]) -> None:
         """Find narrow windows: trace unstable cycles, from chaotic motions and from starts, back to the folds at which stable ones begin."""
         given = set(values)
-        self.windows.beside([counted for counted in self.found if counted.attractor.value in given])
+        self.windows.near_chaos([counted for counted in self.found if counted.attractor.value in given])
         self.windows.around(values, SOUGHT, self.seed)
         if self.windows.left:
             self.left[CYCLES] = self.windows.left

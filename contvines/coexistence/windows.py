@@ -44,7 +44,7 @@ class Windows:
         self.run, self.population, self.separate, self.effort = run, population, separate, effort
         self.left = 0  # number of searches not begun or not completed
 
-    def beside(self, found: Sequence[CountedMotion]) -> None:
+    def near_chaos(self, found: Sequence[CountedMotion]) -> None:
         """Search from the unstable cycles in chaotic motions.
 
         A window opens at a fold with a stable and an unstable cycle; the stable cycle doubles and ends in chaos, the unstable one

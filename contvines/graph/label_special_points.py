@@ -77,7 +77,7 @@ def mark(
     for index, event in sorted(events, key=lambda pair: pair[0]):
         meets, kind = event.role is Role.MEETING, marking.kind(event)
         # after a doubled branch that returned here, a border at the end is not compared with known ones: this branch's border is its own
-        label = marking.known(event, kind, index == 0 or (index == last and not taken))
+        label = marking.known_label(event, kind, index == 0 or (index == last and not taken))
         if label is None:
             label = run.new_label(run.kind(kind).label)
             fresh.append(marking.special(label, kind, event, index))
@@ -162,7 +162,7 @@ class _Marking(NamedTuple):
                     return test.kind
         return event.kind
 
-    def known(self, event: Located, kind: str, at_end: bool) -> str | None:
+    def known_label(self, event: Located, kind: str, at_end: bool) -> str | None:
         """Return the label of a known special point that is the same as an event; None if there is none.
 
         `at_end` says that the event is at an end of the branch: borders are then compared with those that lead to this branch.

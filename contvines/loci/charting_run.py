@@ -162,7 +162,7 @@ class Charting:
 
     def follow(self, candidate: Candidate) -> list[tuple[PlanePoint, Locus]]:
         """Trace the locus of a candidate unless it lies on a known one; return the new points on it, each with the locus."""
-        traced = self.known(candidate)
+        traced = self.locus_through(candidate)
         if traced is not None:
             point = self.chart.points.get(candidate.seed)
             if point is not None and traced.label not in point.on:
@@ -200,7 +200,7 @@ class Charting:
         """Report the number of points that a locus has so far."""
         self.tell(f"{label}: {count} points")
 
-    def known(self, candidate: Candidate) -> Locus | None:
+    def locus_through(self, candidate: Candidate) -> Locus | None:
         """Return the traced locus on which a candidate lies, or None."""
         wanted = condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
