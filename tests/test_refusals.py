@@ -135,7 +135,7 @@ class Mute:
 
 
 class OneParameter(cv.ProblemDefaults):
-    dimension = 1
+    dimension, kernels, data, workspace, spectrum = 1, None, None, None, "map"
 
 
 def many_unknowns(sparsity):
@@ -267,6 +267,7 @@ REFUSED = {
         straight_product, [0.25], {"a": 0.5, "b": 0.5}, parameter="c"
     ),
     "Mute lacks": lambda: cv.diagram(Mute(), within=(0.0, 1.0)),
+    "n_multipliers = 0; give": lambda: cv.diagram(OneParameter(), within=(0.0, 1.0)),
     "gravity cannot vary: a OneParameter has the one parameter 'p'": lambda: OneParameter().against(
         "gravity"
     ),

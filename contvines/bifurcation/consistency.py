@@ -130,7 +130,7 @@ def _count_outside(engine: Engine, event: Located) -> tuple[range, int, bool] | 
     None for points of other kinds.
     """
     sort = next((k for k, kinds in enumerate(PASSED_AT) if event.kind in kinds), None)
-    if sort is None or event.kind == "branch-point" or event.astray:
+    if sort is None or event.kind == "branch-point" or event.astray or not engine.m:
         return None
     spectrum, critical = engine.spectrum(event.point.row), 2 if sort == 2 else 1
     gaps = np.abs(np.abs(spectrum) - 1.0) if sort == 2 else np.abs(spectrum - (1.0, -1.0)[sort])

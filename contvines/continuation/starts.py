@@ -127,6 +127,8 @@ def complete(problem: object) -> Problem:
     ------
     TypeError
         If members are missing; the message lists them.
+    ValueError
+        If it has a spectrum without multipliers.
     """
     missing = [name for name in MEMBERS if not hasattr(problem, name)]
     if missing:
@@ -134,7 +136,17 @@ def complete(problem: object) -> Problem:
             f"{type(problem).__name__} lacks {', '.join(missing)}; derive it from contvines.ProblemDefaults, which "
             "has defaults for all optional members"
         )
-    return cast(Problem, problem)
+    whole = cast(Problem, problem)
+    if (
+        whole.spectrum in ("map", "flow")
+        and whole.dimension
+        and not (whole.n_multipliers or isinstance(problem, Rough))
+    ):
+        raise ValueError(
+            f"{type(problem).__name__} has spectrum = {whole.spectrum!r} and n_multipliers = 0; give the number of its multipliers, or "
+            'spectrum = "none" for branches without stability'
+        )
+    return whole
 
 
 def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:

@@ -218,15 +218,19 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         x, widths = self.curve(u)
         return mesh.error(self.rule, widths, x, self.sizes(x))
 
+    def rests(self, u: np.ndarray) -> bool:
+        """Whether a cycle is so small that it counts as an equilibrium."""
+        return bool((self.sizes(self.curve(u)[0]) / self.node_scale).max() < self.flow.settings.same)
+
     def lags(self, u: np.ndarray) -> bool:
-        """Whether the error of a cycle on its own mesh is too large."""
-        return self.estimated_error(u) > self.flow.error
+        """Whether the error of a cycle on its own mesh is too large; at rest it is rounding."""
+        return not self.rests(u) and self.estimated_error(u) > self.flow.error
 
     def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
         """Return the interpolation of unknowns, or directions, to a mesh with equal shares of the error; None if the mesh is good."""
         x, widths = self.curve(u)
         sizes = self.sizes(x)
-        if (sizes / self.node_scale).max() < self.flow.settings.same:
+        if self.rests(u):
             return None
         new = mesh.equidistributed(self.rule, widths, x, sizes, self.copies)
         return None if new is None else self._onto(widths, new)

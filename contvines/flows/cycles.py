@@ -152,7 +152,7 @@ class CycleProblem(CycleRelatives):
         if self.free_period and self.copies % 2 and self.asymmetry(u) < self.flow.settings.halving:
             self.parts_of_refined = 2
             return True
-        if self.intervals >= MOST:
+        if self.intervals >= MOST or self.rests(u):
             return False
         return self._in_error(u) or self._lost_decay(u, p) or self.moved(u, p) > self.flow.error
 

@@ -241,8 +241,8 @@ class Scout:
         if self.given or known.all():
             return
         rates, sizes = np.abs(tangent), np.append(self.first, self.width)
-        moving = np.append(known, True) & (rates > 0.0)
-        free = ~known & (rates[:-1] > 0.0) & self._confirmed(tangent)[:-1]
+        moves = (rates > 0.0) & self._confirmed(tangent)  # at a fold the parameter stands still
+        moving, free = np.append(known, True) & moves, ~known & moves[:-1]
         if moving.any() and free.any():
             length = float((sizes[moving] / rates[moving]).min())
             self.first = np.where(free, np.maximum(rates[:-1] * length, TINY), self.first)

@@ -36,6 +36,12 @@ def neuron(x, p):
     ]
 
 
+def prey_and_predator(x, p):
+    """Of Rosenzweig and MacArthur: below zero they escape; above they coexist, at rest where prey is d / (e - d h) = 2 / 3."""
+    eaten = x[0] * x[1] / (1 + 0.5 * x[0])
+    return [x[0] * (1 - x[0] / p.k) - eaten, 0.6 * eaten - 0.3 * x[1]]
+
+
 def unit_circle(states):
     """Moments and states of a motion that goes once round it in 2 pi, all further states at rest."""
     times = np.linspace(0.0, 2.0 * np.pi, 101)

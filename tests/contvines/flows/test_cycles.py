@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tests.contvines.flows.shooting import neuron, run
+from tests.contvines.flows.shooting import neuron, prey_and_predator, run
 
 
 def stuart_landau(x, p):
@@ -28,12 +28,6 @@ def test_circles_from_one_hopf_point_to_the_next(tmp_path):
         inner = slice(1, -1)
         assert np.allclose(cycles.multipliers[inner, 0], np.exp(-4.0 * np.pi * growth[inner]), atol=1e-7)
         assert cycles.stable[inner].all()
-
-
-def prey_and_predator(x, p):
-    """Of Rosenzweig and MacArthur: below zero they escape; above they coexist, at rest where prey is d / (e - d h) = 2 / 3."""
-    eaten = x[0] * x[1] / (1 + 0.5 * x[0])
-    return [x[0] * (1 - x[0] / p.k) - eaten, 0.6 * eaten - 0.3 * x[1]]
 
 
 def ring(x, p):

@@ -8,7 +8,7 @@ import pytest
 import contvines as cv
 from contvines.flows import mesh
 from contvines.graph.persistence import same_graph
-from tests.contvines.flows.shooting import cycle, nerve, neuron, van_der_pol
+from tests.contvines.flows.shooting import cycle, nerve, neuron, prey_and_predator, van_der_pol
 
 
 def flow():
@@ -117,21 +117,21 @@ def test_a_branch_that_comes_to_a_cycle_of_half_the_period_ends_there():
 
 
 def test_cycles_near_rounding_have_the_periods_of_shooting_in_logarithms():
-    """Rosenzweig's and MacArthur's prey falls to 1e-14 of its largest number."""
-
-    def rates(x, p):
-        return [
-            x[0] * (1 - x[0] / p.k) - x[0] * x[1] / (0.3 + x[0]),
-            0.8 * x[0] * x[1] / (0.3 + x[0]) - 0.3 * x[1],
-        ]
+    """The prey falls to 1e-14 of its largest number."""
 
     def in_logarithms(y, p):
-        return [rate / number for rate, number in zip(rates(np.exp(y), p), np.exp(y))]
+        return prey_and_predator(np.exp(y), p) / np.exp(y)
 
-    graph = cv.diagram(cv.FlowProblem(rates, [0.2, 0.0], {"k": 0.1}), over="k", within=(0.1, 10.0))
-    cycles = graph["B3"]
+    flow = cv.FlowProblem(prey_and_predator, [1.0, 0.5], {"k": 5.0})
+    cycles = cv.diagram(flow, over="k", within=(2.0, 30.0))["B2"]
     assert "logarithm" in cycles.ended[1]
     for i in (-len(cycles) // 4, -8):
         orbit = cycles.orbit(i)
         period, _ = cycle(in_logarithms, np.log(orbit.states[0]), orbit.period, k=cycles.values[i])
         assert orbit.period == pytest.approx(period, rel=1e-6)
+
+
+def test_a_forced_flow_at_rest_keeps_its_mesh():
+    flow = cv.FlowProblem(lambda x, p, t: [p.a + x[0] ** 2], [-1.0], {"a": -1.0}, period=1.0)
+    graph = cv.diagram(flow, over="a", within=(-2.0, 1.0), depth=0)
+    assert graph["LP1"].value == pytest.approx(0.0, abs=1e-12) and graph["B1"].problem.intervals == 40

@@ -11,6 +11,7 @@ from contvines.plots import plot_diagram
 from contvines.plots.style import LINES
 from contvines.problems.protocol import ProblemDefaults
 from tests.contvines import fakes
+from tests.contvines.flows.shooting import van_der_pol
 
 
 def texts(artists):
@@ -111,7 +112,7 @@ def test_two_graphs_on_the_same_axes(graph):
 
 def test_a_family_of_cycles_at_one_value_does_not_set_the_height():
     """Van der Pol: a linear oscillator at mu = 0, with cycles of all amplitudes; those at other values have an amplitude near 2."""
-    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [0.0, 0.0], {"mu": -0.5})
+    flow = cv.FlowProblem(van_der_pol, [0.0, 0.0], {"mu": -0.5})
     graph = cv.diagram(flow, over="mu", within=(-0.5, 1.0))
     assert max(branch.measure("max x0").max() for branch in graph.branches.values()) > 50.0
     low, high = graph.plot(y="max x0").axes[0].get_ylim()

@@ -58,10 +58,12 @@ def test_eigenvalues_and_coefficients_in_other_units():
 
 def test_where_nothing_can_tell_a_sentence_says_so():
     """u1 is zero all along, alone in its equation and linear there: F(c u1) = c F(u1)."""
-    problem = cv.AlgebraicProblem(lambda u, p: [p * u[0] - u[0] ** 3, -3.0 * u[1]], [0.0, 0.0], -1.0)
-    assert "does not show how large u1 may become" in cv.diagram(problem, within=(-1.0, 1.0)).start
-    told = cv.AlgebraicProblem(lambda u, p: [p * u[0] - u[0] ** 3, u[0] - 3.0 * u[1]], [0.0, 0.0], -1.0)
-    assert cv.diagram(told, within=(-1.0, 1.0)).start == ""
+    for rate, said in ((0.0, "does not show how large u1 may become"), (1.0, "")):
+        problem = cv.AlgebraicProblem(
+            lambda u, p, rate=rate: [p * u[0] - u[0] ** 3, rate * u[0] - 3.0 * u[1]], [0.0, 0.0], -1.0
+        )
+        start = cv.diagram(problem, within=(-1.0, 1.0)).start
+        assert said in start and bool(said) == bool(start)
 
 
 def test_a_two_cycle_begins_without_a_fold():
@@ -84,3 +86,14 @@ def test_a_pair_that_passes_the_axis_is_no_branch_point(unit, row):
 
     graph = cv.diagram(cv.AlgebraicProblem(F, [0.0, 0.0], -1e-9), within=(-1e-9, 1e-9))
     assert {s.kind for s in graph.special.values()} == {"end"}
+
+
+def test_a_start_where_a_fold_meets_a_hopf_point():
+    """The branch x^2 = -p, with eigenvalues x +- i across it."""
+
+    def F(u, p):
+        x, y, z = u
+        return [p + x * x - y * y, x * y - z, y + x * z]
+
+    graph = cv.diagram(cv.AlgebraicProblem(F, np.zeros(3), 0.0), within=(-1.0, 1.0))
+    assert graph["B1"].range == pytest.approx((-1.0, 0.0), abs=1e-9)
