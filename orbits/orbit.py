@@ -326,7 +326,7 @@ def gap(border: Orbit, near: Orbit) -> float:
         return distance(border, near)
     unit = border.model.natural_units(border.params)[0]
     differences = border.positions(INSTANTS) - near.positions(INSTANTS)
-    return float(_largest(differences, _free(border, near))) / unit
+    return float(_largest(differences, _shiftable(border, near))) / unit
 
 
 def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER_PERIOD) -> float:
@@ -338,7 +338,7 @@ def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER
     if not one.forced:
         images = [one, one.mirror()] if mirror else [one]
         return min(_unlike(image, other) for image in images)
-    free = _free(one, other)
+    free = _shiftable(one, other)
     unit = one.model.natural_units(one.params)[0]
     if one.periods == other.periods == 1 and not mirror:
         return float(_largest(one.positions(instants) - other.positions(instants), free)) / unit
@@ -364,7 +364,7 @@ def distance(one: Orbit, other: Orbit, mirror: bool = False, instants: int = PER
     return best / unit
 
 
-def _free(one: Orbit, other: Orbit) -> np.ndarray:
+def _shiftable(one: Orbit, other: Orbit) -> np.ndarray:
     """Return which positions can be shifted as a whole."""
     loose = {*one.flow.loose(one.model, one.word), *other.flow.loose(other.model, other.word)}
     return np.array([entry in loose for entry in one.flow.position_entries(one.model)])

@@ -199,13 +199,13 @@ class OrbitProblem(Motions):
 
     def beyond(self, point: BorderPoint) -> Sequence[Seed]:
         """Return the orbits on the other side of a border, with the words that the laws of the contacts give."""
-        return [self._smoothly(seed) for seed in cross(self, point)]
+        return [self._as_flow(seed) for seed in cross(self, point)]
 
     def onward(self, point: BorderPoint) -> Sequence[Seed]:
         """Return the branches beyond a border, without orbits of less symmetry or longer period unless there are no others."""
-        return [self._smoothly(seed) for seed in cross(self, point, every=False)]
+        return [self._as_flow(seed) for seed in cross(self, point, every=False)]
 
-    def _smoothly(self, seed: Seed) -> Seed:
+    def _as_flow(self, seed: Seed) -> Seed:
         """Return the seed; a self-excited motion without events becomes a cycle of a smooth flow."""
         if self.forced or len(seed.problem.word) or not seed.problem.word.modes:
             return seed

@@ -66,8 +66,8 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
     counted = sum(e.kind == "branch-point" for e in points)
     if segment.a.sign * segment.b.sign < 0.0 and (counted + len(meetings)) % 2 == 0:
         root = _by_sign(segment)
-        if root is not None and not _near(segment, root.position, meetings):
-            turning = _near(segment, root.position, folds)
+        if root is not None and not _is_near(segment, root.position, meetings):
+            turning = _is_near(segment, root.position, folds)
             # a branch may turn exactly where it meets another one; at a plain fold the change of sign is rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
                 place = Located.at(root, "branch-point", astray=is_jump(segment, root))
@@ -108,7 +108,7 @@ def _by_multipliers(segment: Segment, folds: list[float], meetings: list[float])
     points = []
     for test in tests:
         root = locate(segment, test.function, jump=test.jump)
-        if root is None or not root.continuous or _near(segment, root.position, folds + meetings):
+        if root is None or not root.continuous or _is_near(segment, root.position, folds + meetings):
             continue
         unit = min(1.0, *(float(np.abs(engine.spectrum(end.row)).max()) for end in (segment.a, segment.b)))
         if abs(test.function(root.point)) > engine.settings.critical * unit or _complex(segment, root.point):
@@ -196,7 +196,7 @@ def _exchange(segment: Segment) -> Located | None:
     return Located.at(root, "branch-point") if on_circle else None
 
 
-def _near(segment: Segment, position: float, others: list[float]) -> bool:
+def _is_near(segment: Segment, position: float, others: list[float]) -> bool:
     """Whether a position is equal to one of the others within `Settings.near`."""
     return any(abs(position - other) <= segment.engine.settings.near for other in others)
 

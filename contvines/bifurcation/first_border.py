@@ -223,7 +223,7 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
     computed = _characteristic(segment.engine.spectrum(own)).tolist()
     best: list[list[float]] | None = None
     error, last, any_finite = math.inf, list[list[float]](), False
-    for spacing, rows in _before(segment, position, LIMITS.distances):
+    for spacing, rows in _samples(segment, position, LIMITS.distances):
         polynomials = _characteristic(segment.engine.spectrum(rows))
         if not np.isfinite(polynomials).all():
             continue
@@ -254,8 +254,8 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
 def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
     """Return the polynomial and the limit of its product with the vanishing margin, if this product is constant for all sizes of the margin, else None."""
     engine = segment.engine
-    before_border = [rows for _, rows in _before(segment, position, LIMITS.nearest)]
-    _, before = next(_before(segment, position, LIMITS.distances))
+    before_border = [rows for _, rows in _samples(segment, position, LIMITS.nearest)]
+    _, before = next(_samples(segment, position, LIMITS.distances))
     if not (before_border and engine.problem.n_margins):
         return None
     rows = np.concatenate([own[None, :], *before_border])
@@ -277,7 +277,7 @@ def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray
 
     Used if the row computed at the border is not finite and more events vanish at once than `POLES` allows for.
     """
-    m, nearest = segment.engine.m, [rows for _, rows in _before(segment, position, LIMITS.distances)][-1:]
+    m, nearest = segment.engine.m, [rows for _, rows in _samples(segment, position, LIMITS.distances)][-1:]
     if not nearest or not np.isfinite(nearest[0][:, : 2 * m]).all():
         return own
     near, far = (sorted(one, key=abs, reverse=True) for one in segment.engine.spectrum(nearest[0][[0, -1]]))
@@ -296,7 +296,7 @@ def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
     reaching zero, as the growth stops there for this reason.
     """
     largest = max(map(abs, computed))
-    for _, rows in _before(segment, position, LIMITS.nearest):
+    for _, rows in _samples(segment, position, LIMITS.nearest):
         margins, values = segment.engine.smallest_margin(rows), _characteristic(segment.engine.spectrum(rows))
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
@@ -317,7 +317,7 @@ def _polynomial_difference(one: list[float], other: list[float]) -> float:
     return gap / max(map(abs, one + other)) if gap > 0.0 else 0.0
 
 
-def _before(
+def _samples(
     segment: Segment, position: float, spacings: tuple[float, ...]
 ) -> Iterator[tuple[float, np.ndarray]]:
     """Generate (spacing, rows of multipliers and margins at four points before the border, shape (4, columns)), if all four are solved.

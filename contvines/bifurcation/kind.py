@@ -313,14 +313,16 @@ def _answer(kind: Kind, role: str, point: Point) -> Any:
         if role in ("test", "locus") and isinstance(error, ArithmeticError | np.linalg.LinAlgError):
             raise
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"kind {kind.name}: its {role} fails at {_place(point)}: {reason}") from error
+        raise ValueError(f"kind {kind.name}: its {role} fails at {_place_text(point)}: {reason}") from error
 
 
 def _wrong_type(kind: Kind, role: str, found: object, point: Point, wanted: str) -> ValueError:
-    return ValueError(f"kind {kind.name}: its {role} returns {found!r} at {_place(point)}; expected {wanted}")
+    return ValueError(
+        f"kind {kind.name}: its {role} returns {found!r} at {_place_text(point)}; expected {wanted}"
+    )
 
 
-def _place(point: Point) -> str:
+def _place_text(point: Point) -> str:
     return ", ".join(f"{name} = {value:.10g}" for name, value in point.place.items())
 
 
@@ -386,12 +388,12 @@ def own_tests(
 
     found = [Own(kind, "", partial(of_kind, kind)) for kind in kinds if kind.test is not None]
     for name, function in functions.items():
-        many = _many(engine.problem, function)
+        many = _vectorised(engine.problem, function)
         found.append(Own(replace(user, ends=name in stops), name, partial(of_function, many), many))
     return found
 
 
-def _many(problem: Problem, function: UserFunction) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+def _vectorised(problem: Problem, function: UserFunction) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """Return the user function for many points at once: unknowns, shape (n, N), and parameter values, shape (n,), -> values, shape (n,)."""
     if callable(function):
         return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])

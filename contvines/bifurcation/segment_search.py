@@ -106,7 +106,7 @@ class SegmentSearch:
         behind = self._beside_infinity(segment, real)
         if behind is not None:
             return self.part(segment, behind[1], segment.b, (behind[0], 1.0), real, depth)
-        stop, before = self._stop(segment, real, depth)
+        stop, before = self._branch_end(segment, real, depth)
         if before is not None:
             return [*before, *stop]
         found = self._of_all_kinds(segment, stop)
@@ -118,7 +118,7 @@ class SegmentSearch:
                 turns = any(e.kind == "fold" and at_one(self.engine, e) for e in found)
                 return self.both(segment, 0.5, middle, real, depth + 1, turns)
             found.append(replace(unresolved(segment, middle), name="parts" if closer else ""))
-        return [*found, *self._own(segment)]
+        return [*found, *self._user_zeros(segment)]
 
     def part(
         self,
@@ -200,7 +200,7 @@ class SegmentSearch:
                 )
         return found
 
-    def _own(self, segment: Segment) -> list[Located]:
+    def _user_zeros(self, segment: Segment) -> list[Located]:
         """Return the zeros of user-defined tests."""
         found = []
         for number, test in enumerate(self.own):
@@ -211,7 +211,9 @@ class SegmentSearch:
         return found
 
     # ------------------------------------------------------------------ where a branch ends
-    def _stop(self, segment: Segment, real: bool, depth: int) -> tuple[list[Located], list[Located] | None]:
+    def _branch_end(
+        self, segment: Segment, real: bool, depth: int
+    ) -> tuple[list[Located], list[Located] | None]:
         """Return the border or the meeting at which the branch ends, and the special points before it; None instead of the latter if not yet searched."""
         settings, (border, last) = self.engine.settings, border_of(segment, real)
         if border is not None and depth < settings.halvings:
@@ -305,7 +307,7 @@ class SegmentSearch:
         if not real and (window := self.passed(segment)) is not None:
             return window
         ends = self.evidence_of([segment.a, segment.b])
-        first = sample = self._at(segment, PLACES, ends, real)
+        first = sample = self._sampled(segment, PLACES, ends, real)
         for column in columns:
             sample, low, high, outer = first, 0.0, 1.0, ends.distance(column)
             roof = column == ends.first_margin - 1
@@ -319,12 +321,12 @@ class SegmentSearch:
                 if not (roof or parabola_dips(*(three * np.sign(three[0])), *gaps)):
                     break
                 low, high, outer = around[k - 1], around[k + 1], three[::2]
-                sample = self._at(segment, low + (high - low) * PLACES, ends, real)
+                sample = self._sampled(segment, low + (high - low) * PLACES, ends, real)
             if sample.split is not None:
                 break
         return sample.split
 
-    def _at(self, segment: Segment, places: np.ndarray, ends: Evidence, real: bool) -> _Sample:
+    def _sampled(self, segment: Segment, places: np.ndarray, ends: Evidence, real: bool) -> _Sample:
         """Return points of a segment at some positions, their evidence, and the first point whose evidence differs from that of both ends."""
         found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
         if not found:
@@ -344,7 +346,7 @@ class SegmentSearch:
         The middle of the segment is the third point of the parabolas that decide whether to search further.
         """
         ends = self.evidence_of([segment.a, segment.b])
-        sample = self._at(segment, np.array([0.5]), ends, real)
+        sample = self._sampled(segment, np.array([0.5]), ends, real)
         if sample.split is not None:
             return sample.split
         if sample.points:
@@ -371,7 +373,7 @@ class SegmentSearch:
         ends = self.evidence_of([segment.a, segment.b])
         sampled, halves = [*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], np.array([0.5])
         for _ in range(HALVINGS):
-            sample = self._at(segment, halves, ends, real)
+            sample = self._sampled(segment, halves, ends, real)
             if sample.split is not None or not sample.points:
                 return sample.split
             sampled = sorted(

@@ -270,10 +270,10 @@ class _BranchPoint:
         trials = ((LEAST_RATIO, LEAVING.slanted), (LEAST_RATIO, LEAVING.grazing), (0.0, LEAVING.slanted))
         for test in (exchanged, None) if exchanged is not None else (None,):
             for trial in trials:
-                found = self._along(direction, bend, test, *trial)
-                straight = None if found is None else self._straight(found)
+                found = self._branch_along(direction, bend, test, *trial)
+                straight = None if found is None else self._other_direction(found)
                 if straight is not None:
-                    found = self._along(straight, 0.0, test, *trial) or found
+                    found = self._branch_along(straight, 0.0, test, *trial) or found
                 if found is not None:
                     return found
         return None
@@ -312,7 +312,7 @@ class _BranchPoint:
         found = next((point for point in solved if point is not None), None)
         return None if found is None else found._replace(u=np.array(self.u, dtype=float), sign=0.0)
 
-    def _straight(self, found: Departure) -> np.ndarray | None:
+    def _other_direction(self, found: Departure) -> np.ndarray | None:
         """If one of the two sides lies on the known branch, which turns round here (at a pitchfork), return the direction of the other one; else None.
 
         On a smooth branch the deviation from proportionality falls to a quarter at half the distance; on a branch that turns round, and behaves like
@@ -336,7 +336,7 @@ class _BranchPoint:
                 rough = True
         return straight if rough else None
 
-    def _along(
+    def _branch_along(
         self, direction: np.ndarray, bend: float, exchanged: Exchanged, least: float, reach: float
     ) -> Departure | None:
         """Compute the branch in a direction, from first points within `reach` amplitudes.

@@ -229,13 +229,13 @@ class Family:
 
     def follow(self) -> str:
         """Compute circles of growing amplitude, then along their family; return the sentence why the family ends."""
-        return self._growing() or self._onwards()
+        return self._continue_growing() or self._continue_on()
 
-    def _growing(self) -> str | None:
+    def _continue_growing(self) -> str | None:
         """Continue by growing amplitude; return the sentence why the family ends, or None if a larger amplitude is not found."""
         amplitude, factor, points, frame = FIRST * self.amplitude, GROWTH, FEWEST, self.birth.frame
         while len(self.found) < self.count:
-            curve, _ = self._smooth(self._larger(amplitude, points), of_amplitude(amplitude))
+            curve, _ = self._smooth(self._predict_larger(amplitude, points), of_amplitude(amplitude))
             if curve is None:
                 if not self.found:
                     amplitude *= 0.5
@@ -258,24 +258,24 @@ class Family:
                 amplitude = min(amplitude, self.amplitude)
         return self._enough()
 
-    def _onwards(self) -> str:
+    def _continue_on(self) -> str:
         """Continue along the family; return the sentence why it ends."""
         step, found = LONGEST, self.found
         while len(found) < self.count:
             before = self.birth.curve(0.0, len(found[-1].points)) if len(found) == 1 else found[-2]
             torn = False
             for part in TRIES:
-                curve, broken = self._smooth(*self._next(before, found[-1], part * step))
+                curve, broken = self._smooth(*self._predict_next(before, found[-1], part * step))
                 if curve is not None:
                     break
                 torn = torn or broken
             else:
-                return self._broken(found[-1], torn)
+                return self._reason_of_break(found[-1], torn)
             if ended := self._arrived(curve, abs(first_harmonic(curve, self.birth.frame))):
                 return ended
             step = min(LONGEST, 1.3 * part * step)
             if step < LEAST:
-                return self._broken(curve, curve.tail > CIRCLES.smooth)
+                return self._reason_of_break(curve, curve.tail > CIRCLES.smooth)
         return self._enough()
 
     def _arrived(self, curve: Curve, amplitude: float) -> str | None:
@@ -292,7 +292,7 @@ class Family:
     def _enough(self) -> str:
         return f"stopped after {self.count} circles at {self.name} = {self.found[-1].value:.8g}"
 
-    def _broken(self, last: Curve, torn: bool) -> str:
+    def _reason_of_break(self, last: Curve, torn: bool) -> str:
         """Sentence why circles end after the last one."""
         at, at_birth = f"near {self.name} = {last.value:.8g}", self.birth.rotation
         if abs(last.rotation) < SLOW_ROTATION * abs(at_birth):
@@ -315,7 +315,7 @@ class Family:
         reason = "it is no longer smooth" if torn else "it cannot be followed any further"
         return f"the circle breaks {at}: {reason}"
 
-    def _larger(self, amplitude: float, count: int) -> Curve:
+    def _predict_larger(self, amplitude: float, count: int) -> Curve:
         """Predict the next circle from the last two: points linear in the amplitude, rotation and parameter linear in its square."""
         if not self.found:
             return self.birth.curve(amplitude, count)
@@ -327,7 +327,7 @@ class Family:
         share, bend = (amplitude - r) / (r - r0), (amplitude**2 - r**2) / (r**2 - r0**2)
         return last.beyond(before, share, bend)
 
-    def _next(self, before: Curve, last: Curve, step: float) -> tuple[Curve, Condition]:
+    def _predict_next(self, before: Curve, last: Curve, step: float) -> tuple[Curve, Condition]:
         """Predict the next circle in the direction of the last change; return it with the condition of the plane perpendicular to this direction."""
         current, previous = (
             np.array([first_harmonic(curve, self.birth.frame).real, curve.rotation, curve.value])

@@ -211,12 +211,12 @@ class _Search:
         """Yield the pieces of one kind of work while the budget lasts, at least the first `least`; count those left out."""
         self.effort.expect(kind, len(work))
         for k, piece in enumerate(work):
-            if k >= least and self._over(kind, len(work) - k):
+            if k >= least and self._budget_spent(kind, len(work) - k):
                 return
             with self.effort.piece(kind):
                 yield piece
 
-    def _over(self, kind: str, left: int) -> bool:
+    def _budget_spent(self, kind: str, left: int) -> bool:
         """Return whether the budget is used up; if so, record that `left` pieces of this kind of work are left out."""
         if self.effort.over:
             self.left[kind] = left
@@ -287,7 +287,7 @@ class _Search:
         """Simulate at scattered values until `scan` values in a row have added no branch."""
         fruitless = k = 0
         self.effort.expect(ENDS, len(self.handover.left()))
-        while (left := min(scan - fruitless, LONGEST_SCAN * scan - k)) > 0 and not self._over(
+        while (left := min(scan - fruitless, LONGEST_SCAN * scan - k)) > 0 and not self._budget_spent(
             SCATTERED, left
         ):
             self.effort.expect(SCATTERED, left)

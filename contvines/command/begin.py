@@ -297,8 +297,8 @@ def study_schema() -> dict[str, Any]:
     kinds += [schema for schema in map(_physical, NAMES) if schema is not None]
     kinds = [_with_conditions(kind) for kind in kinds]
     own = [
-        _own(_with_units(inlined(PageSections)), "a machine of a Python file"),
-        _own(inlined(FlowSections), "a flow of a Python file"),
+        _for_python_files(_with_units(inlined(PageSections)), "a machine of a Python file"),
+        _for_python_files(inlined(FlowSections), "a flow of a Python file"),
     ]
     return {
         "$schema": DIALECT,
@@ -375,7 +375,7 @@ def _physical(name: str) -> dict[str, Any] | None:
     }
 
 
-def _own(schema: dict[str, Any], title: str) -> dict[str, Any]:
+def _for_python_files(schema: dict[str, Any], title: str) -> dict[str, Any]:
     """Restrict a schema to studies of a Python file, by the form of the model's name; the parameters are known only after the file has run."""
     from orbits.machines.names import PAGES, STRUCTURE
 

@@ -140,7 +140,7 @@ class Reach:
             )  # no root mean square is larger
             if begin + len(chunk) * spacing < escape:
                 return None
-            away = _away(chunk.points, self.start.u, escape, scale)
+            away = _is_far(chunk.points, self.start.u, escape, scale)
             return int(np.argmax(away)) if away.any() else None
         distances = self._distances(chunk.points)
         if not distances.max() > 0.5 * self.doubled:
@@ -196,7 +196,7 @@ class Reach:
         return np.sqrt((((points - self.start.u) / self.engine.scale[:-1]) ** 2).mean(axis=1))
 
 
-def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -> np.ndarray:
+def _is_far(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -> np.ndarray:
     """Return which points are farther than `escape` times the scale from u (root mean square), shape (n,)."""
     if not (scale == 1.0).all():
         points, u = points / scale, u / scale

@@ -349,13 +349,13 @@ class MeshMotion:
 
     def steered(self, point: Solved) -> Solved:
         """Return the point with the tangent in which the mesh moves with the solution."""
-        return point if self.moving is None else self._along(point, self.moving.steer)
+        return point if self.moving is None else self._with_tangent(point, self.moving.steer)
 
     def standing(self, point: Solved) -> Solved:
         """Return the point with the tangent in which the mesh is fixed."""
-        return point if self.moving is None else self._along(point, self.moving.stand)
+        return point if self.moving is None else self._with_tangent(point, self.moving.stand)
 
-    def _along(self, point: Solved, change: Callable[[np.ndarray, np.ndarray], None]) -> Solved:
+    def _with_tangent(self, point: Solved, change: Callable[[np.ndarray, np.ndarray], None]) -> Solved:
         """Return the point with a changed tangent, of unit length."""
         tangent = point.tangent.copy()
         change(point.u, tangent)

@@ -233,13 +233,13 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         if self.rests(u):
             return None
         new = mesh.equidistributed(self.rule, widths, x, sizes, self.copies)
-        return None if new is None else self._onto(widths, new)
+        return None if new is None else self._remeshed(widths, new)
 
     def carried(self, u: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Return unknowns interpolated to the mesh of others."""
-        return self._onto(u[self.held], other[self.held])(u)
+        return self._remeshed(u[self.held], other[self.held])(u)
 
-    def _onto(self, widths: np.ndarray, new: np.ndarray) -> Callable[..., np.ndarray]:
+    def _remeshed(self, widths: np.ndarray, new: np.ndarray) -> Callable[..., np.ndarray]:
         """Interpolation of unknowns, or directions, to a mesh with other widths."""
         read = mesh.reading(self.rule, widths, mesh.node_places(self.rule, new))
 
@@ -257,7 +257,7 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         """
         if self.parts_of_refined == 2:
             own = (self.u0 if direction else u)[self.held]
-            return self._onto(own, mesh.with_equal_halves(own))(u, direction)
+            return self._remeshed(own, mesh.with_equal_halves(own))(u, direction)
         end = self.held.start
         x = u[..., : self.states].reshape(*u.shape[:-1], self.intervals, self.rule.degree, self.node)
         finer = mesh.halved(self.rule, x).reshape(*u.shape[:-1], 2 * self.states)

@@ -184,7 +184,7 @@ def refined(
     first = more = solve_collocation(blocks, columns, rows, foot, d, closure)
     states, shared = first.states, first.shared
     while True:
-        columns, foot, share = _missed(blocks, columns, rows, foot, d, closure, more)
+        columns, foot, share = _residuals(blocks, columns, rows, foot, d, closure, more)
         left *= share
         if not (share < 0.5 and left > HALF_THE_DIGITS):
             return first._replace(states=states, shared=shared)
@@ -192,7 +192,7 @@ def refined(
         states, shared = states + more.states, shared + more.shared
 
 
-def _missed(
+def _residuals(
     blocks: np.ndarray,
     columns: np.ndarray,
     rows: np.ndarray,

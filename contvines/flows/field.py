@@ -194,7 +194,7 @@ class Field:
         except NotEvaluable:
             return None
 
-    def _along(self, masks: np.ndarray, x: np.ndarray, p: float, t: np.ndarray | None) -> np.ndarray:
+    def _column_sums(self, masks: np.ndarray, x: np.ndarray, p: float, t: np.ndarray | None) -> np.ndarray:
         """Sums of columns of df/dx at the points, shape (k, n, d), for k masks of columns: by the complex step, or by differences in units of the lengths."""
         if self.complex_step:
             shifted = (x + 1j * COMPLEX_STEP * masks[:, None]).reshape(-1, self.node)
@@ -218,14 +218,14 @@ class Field:
         for group in range(pattern.count):
             mask = pattern.groups == group
             chosen = mask[pattern.columns]
-            found[:, chosen] = self._along(mask[None], x, p, t)[0][:, pattern.indices[chosen]]
+            found[:, chosen] = self._column_sums(mask[None], x, p, t)[0][:, pattern.indices[chosen]]
         return found if self.complex_step else found / self.lengths[pattern.columns]
 
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """Return df/dx at the points, shape (n, d, d)."""
         if self._matrices is not None:
             return self._evaluated(self._matrices, x, p, t)
-        found = np.ascontiguousarray(self._along(np.eye(self.node), x, p, t).transpose(1, 2, 0))
+        found = np.ascontiguousarray(self._column_sums(np.eye(self.node), x, p, t).transpose(1, 2, 0))
         return found if self.complex_step else found / self.lengths
 
     def rest(

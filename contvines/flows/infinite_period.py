@@ -63,7 +63,7 @@ class Saddle:
 
     def __str__(self) -> str:
         word = "saddle-focus" if np.iscomplex(self.eigenvalues).any() else "saddle"
-        values = ", ".join(_shortly(value) for value in np.sort_complex(self.eigenvalues))
+        values = ", ".join(_value_text(value) for value in np.sort_complex(self.eigenvalues))
         return f"the {word} at {_place(self.place)} with eigenvalues {values}"
 
 
@@ -192,7 +192,7 @@ def _place(x: np.ndarray) -> str:
     return f"({', '.join(f'{v:.6g}' for v in x)})"
 
 
-def _shortly(value: complex) -> str:
+def _value_text(value: complex) -> str:
     return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"
 
 

@@ -90,7 +90,7 @@ class ReturnMap:
         total = np.tile(np.eye(d, d + 1), (len(x), 1, 1))
         with np.errstate(all="ignore"):
             for i in range(len(self.widths) + self.problem.free_period):
-                through = self._through(i, x, p) if i < len(self.widths) else self._onto_plane(x, p)
+                through = self._through_interval(i, x, p) if i < len(self.widths) else self._onto_plane(x, p)
                 x, nodes, steps, times, by_parameter = through
                 if derivatives:
                     varied = self._varied(nodes, steps, p, times, by_parameter)
@@ -102,7 +102,7 @@ class ReturnMap:
                     total[:, :, d] += varied[:, :, d]
         return x, total
 
-    def _through(self, i: int, x: np.ndarray, p: float) -> Flight:
+    def _through_interval(self, i: int, x: np.ndarray, p: float) -> Flight:
         """Compute motions through interval i of the mesh."""
         field, count, width = self.field, len(x), self.widths[i]
         places = self.begins[i] + width * self.rule.points

@@ -191,13 +191,13 @@ def _free(
         brief += len(run.t) <= BRIEF
         ranges = np.ptp(run.y, axis=1)
         resting = (ranges <= s.still * (field.lengths + np.abs(x))).all()
-        rest = x if resting else _rest(field, p, run.y[:, -1])
+        rest = x if resting else _equilibrium_at(field, p, run.y[:, -1])
         if rest is not None:
             raise AtRest(rest)
         plane, unit = _fastest(field, p, run)
-        if _returned(run, plane, s.nearly * unit, longest) is not None:
+        if _last_return(run, plane, s.nearly * unit, longest) is not None:
             exact = _run(field, p, plane.x, 0.0, span, dense=True)
-            found = _returned(exact, plane, s.recurs * unit, longest)
+            found = _last_return(exact, plane, s.recurs * unit, longest)
             if found is not None:
                 start, period = exact.sol(found[0]), found[1] - found[0]
                 run_again = _run(field, p, start, 0.0, period, dense=True)
@@ -217,7 +217,7 @@ def last_round(
     if len(settled) < 2:
         return None
     motion, (plane, unit) = Interpolant(places), _fastest(field, p, Interpolant(settled))
-    found = _returned(motion, plane, field.settings.recurs * unit, longest)
+    found = _last_return(motion, plane, field.settings.recurs * unit, longest)
     if found is None:
         return None
     times = np.linspace(*found, SAMPLES + 1)
@@ -233,7 +233,7 @@ def _fastest(field: Field, p: float, run: OdeResult | Interpolant) -> tuple[Plac
     return Place(float(run.t[i]), run.y[:, i], rates[i] / unit**2), unit
 
 
-def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
+def _equilibrium_at(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
     """The stable equilibrium at a state, within the errors of a rough simulation; None if there is none."""
     s, matrix = field.settings, field.jacobian(x[None], p)[0]
     try:
@@ -244,7 +244,7 @@ def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
     return x + step if near and (np.linalg.eigvals(matrix).real < 0.0).all() else None
 
 
-def _returned(
+def _last_return(
     run: OdeResult | Interpolant, plane: Place, close: np.ndarray, longest: int
 ) -> tuple[float, float] | None:
     """The last two times at which a motion crosses a plane in the same state; None if it does not return to the same state."""

@@ -338,7 +338,7 @@ def fits(value: object, hint: object) -> bool:
     if kind in (Union, UnionType):
         return any(fits(value, part) for part in parts)
     if kind in (Any, Problem, Kind):  # Problem and Kind are not stored in files
-        return _plain(value)
+        return _is_writable(value)
     if kind is LazyNumber:
         return value is None or fits(value, float)
     if kind is NoneType or hint is None:
@@ -373,12 +373,12 @@ def _finite_size(value: float) -> bool:
     return True
 
 
-def _plain(value: object, levels: int = DEEPEST) -> bool:
+def _is_writable(value: object, levels: int = DEEPEST) -> bool:
     """Whether a value is nested at most `levels` deep, so that it can be written and compared."""
     if isinstance(value, Mapping):
-        return levels > 0 and all(_plain(v, levels - 1) for v in value.values())
+        return levels > 0 and all(_is_writable(v, levels - 1) for v in value.values())
     if isinstance(value, list | tuple):
-        return levels > 0 and all(_plain(v, levels - 1) for v in value)
+        return levels > 0 and all(_is_writable(v, levels - 1) for v in value)
     return not isinstance(value, int) or _finite_size(value)
 
 

@@ -288,7 +288,7 @@ def default_measure(graph: Graph) -> str:
             continue
         others = [n for n in names if n not in ("norm", graph.parameter)]
         choice = [n for n in (wanted, "max_abs_w", *others) if n in names]
-        return next((str(n) for n in choice if _shown(graph, n)), choice[0] if choice else names[0])
+        return next((str(n) for n in choice if _is_measured(graph, n)), choice[0] if choice else names[0])
     return "norm"
 
 
@@ -320,7 +320,7 @@ def measured(branch: Branch, name: str) -> np.ndarray:
         ) from error
 
 
-def _shown(graph: Graph, name: str) -> bool:
+def _is_measured(graph: Graph, name: str) -> bool:
     """Whether a measure is a finite number on some branch."""
     return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
 

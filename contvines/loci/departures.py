@@ -184,7 +184,7 @@ class Asymptotics:
         self.flow, self.values, self.over, d = problem.flow, problem.values, over, problem.node
         lengths = self.flow.field.lengths if problem.scales is None else problem.scales.unknowns[:d]
         self.start, self.units, self.d = np.array([*u[:d], *value]), np.array([*lengths, *units]), d
-        slopes = np.array([self._along(unit)[0] for unit in np.eye(d + 2)]).T
+        slopes = np.array([self._derivatives_along(unit)[0] for unit in np.eye(d + 2)]).T
         matrix, by_value = slopes[:, :d], slopes[:, d:]
         left, _, right = np.linalg.svd(matrix)
         v, w = right[-1], left[:, -1]
@@ -198,17 +198,17 @@ class Asymptotics:
         p0 = p0 - (p0 @ q1) * w
         nothing = np.zeros(2)
         first, second = np.append(v, nothing), np.append(q1, nothing)
-        square = self._bent(first, first)
-        self.a, self.b = 0.5 * float(w @ square), float(w @ self._bent(first, second) + p0 @ square)
+        square = self._mixed(first, first)
+        self.a, self.b = 0.5 * float(w @ square), float(w @ self._mixed(first, second) + p0 @ square)
         normal = w @ by_value
         normal = normal / (normal @ normal)
         flat = np.array([-normal[1], normal[0]])
         ahead = np.append(-solved(by_value @ flat), flat)
-        bends = [(self._bent(first, along), self._bent(second, along)) for along in (ahead, first)]
+        bends = [(self._mixed(first, along), self._mixed(second, along)) for along in (ahead, first)]
         system = np.array([[w @ one for one, _ in bends], [p0 @ one + w @ other for one, other in bends]])
         parts = np.linalg.solve(system, [0.0, 1.0])
         self.by_second = parts[0] * ahead + parts[1] * first
-        bend = -0.5 * float(w @ self._bent(self.by_second, self.by_second))
+        bend = -0.5 * float(w @ self._mixed(self.by_second, self.by_second))
         self.states, self.across, self.bend = (first, second), np.append(np.zeros(d), normal), bend
 
     def _line(self, direction: np.ndarray) -> np.ndarray:
@@ -220,15 +220,15 @@ class Asymptotics:
             found.append(self.flow.field.against(values)(z[None, : self.d], z[-2])[0])
         return np.array(found) / self.units[: self.d]
 
-    def _along(self, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _derivatives_along(self, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """First and second derivatives of the rates along a direction."""
         line = self._line(direction)
         slope = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
         return slope @ line / STEP, BEND @ line / STEP**2
 
-    def _bent(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    def _mixed(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Mixed second derivative of the rates along two directions."""
-        return 0.25 * (self._along(one + other)[1] - self._along(one - other)[1])
+        return 0.25 * (self._derivatives_along(one + other)[1] - self._derivatives_along(one - other)[1])
 
     def largest(self, share: float) -> float:
         """Return the e at which the size of the orbit, or the change of a parameter, is a given share of its unit."""

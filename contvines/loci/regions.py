@@ -253,12 +253,12 @@ class KnownMotions:
                 return None
             while (smaller := problem.root(u, p)) is not None:
                 problem, u = smaller
-            if problem is not engine.problem and not self._holds(problem, u, p):
+            if problem is not engine.problem and not self._shorter_is_stable(problem, u, p):
                 return None
             return problem.attractor(u, p) if isinstance(problem, Attracting) else None
         return None
 
-    def _holds(self, problem: Problem, u: np.ndarray, p: float) -> bool:
+    def _shorter_is_stable(self, problem: Problem, u: np.ndarray, p: float) -> bool:
         """Whether the shorter motion that a motion repeats is a solution, and stable: a cycle whose period tends to zero stays at a state that need not be an equilibrium."""
         engine = Engine(problem, self.within[0], Settings())
         solved = engine.at_value(u, p)

@@ -125,7 +125,7 @@ def _multipliers(locus: LocusProblem) -> Iterator[Sought]:
             yield look("double-hopf" if flow else "double-neimark-sacker", _second_pair)
     if condition == MARGIN:
         yield look("border-fold", _plus)
-        yield look(TOUCHING, _touch)
+        yield look(TOUCHING, _margin_slope)
         if not flow and not none:
             yield look(f"border-{turn}", _minus)
         if pairs and not none:
@@ -243,7 +243,7 @@ def _double(value: float, plane: Plane, at: References) -> float:
     return float(np.real(np.sum(nearest)) - 2.0 * value)
 
 
-def _touch(plane: Plane, at: References) -> float:
+def _margin_slope(plane: Plane, at: References) -> float:
     return plane.slope_along_branch(at.plus)
 
 

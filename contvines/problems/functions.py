@@ -345,10 +345,10 @@ class Outputs:
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Return their values for solutions u of shape (m, N) at parameter values p of shape (m,); NaN where a function fails."""
         return {
-            name: np.array([self._one(name, *pair) for pair in zip(u, np.atleast_1d(p))]) for name in names
+            name: np.array([self._value(name, *pair) for pair in zip(u, np.atleast_1d(p))]) for name in names
         }
 
-    def _one(self, name: str, u: np.ndarray, p: float) -> float:
+    def _value(self, name: str, u: np.ndarray, p: float) -> float:
         try:
             return float(self.functions[name](u, float(p))[0])
         except (NotEvaluable, IndexError):

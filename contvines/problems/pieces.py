@@ -87,7 +87,7 @@ class Pieces:
         self.given, self.parameters = dict(switches or {}), parameters
         self.switches = [UserFunction(f, f"the switch {name}", parameters) for name, f in self.given.items()]
         try:
-            values = np.array([self._at(node, parameters.start) for node in nodes])
+            values = np.array([self._switch_values(node, parameters.start) for node in nodes])
         except NotEvaluable as error:
             raise ValueError(f"{error}, at the start") from error
         for name, column in zip(self.given, values.T):
@@ -98,12 +98,12 @@ class Pieces:
         self.signs = np.where(values >= 0.0, 1, -1).reshape(len(nodes), len(self.switches))
         self.current = 0
 
-    def _at(self, u: np.ndarray, p: float) -> np.ndarray:
+    def _switch_values(self, u: np.ndarray, p: float) -> np.ndarray:
         return np.array([float(switch(u, p)[0]) for switch in self.switches])
 
     def choose(self, u: np.ndarray, p: float) -> None:
         """Set the signs to those at one state (for a single node)."""
-        self.signs = np.where(self._at(u, p) >= 0.0, 1, -1).reshape(1, -1)
+        self.signs = np.where(self._switch_values(u, p) >= 0.0, 1, -1).reshape(1, -1)
         self.current = 0
 
     @property
@@ -144,7 +144,7 @@ class Pieces:
     def margins(self, nodes: np.ndarray, p: float) -> np.ndarray:
         """Return the switches times their signs, flat; NaN if a switch cannot be evaluated."""
         try:
-            values = np.array([self._at(node, p) for node in nodes])
+            values = np.array([self._switch_values(node, p) for node in nodes])
         except NotEvaluable:
             return np.full(self.count, np.nan)
         return (values * self.signs).reshape(-1)

@@ -282,7 +282,7 @@ def weighed(
         _spread(np.where(tried, 0.0, matrix), lengths, part)
         part &= ~tried
         rows = (matrix * np.where(known, lengths, 0.0)).max(axis=1)
-        factor = _even(f, np.where(part, lengths, 0.0), rows)
+        factor = _even_factor(f, np.where(part, lengths, 0.0), rows)
         tried |= part
         if factor is not None:
             lengths[part] *= factor
@@ -305,7 +305,7 @@ def _spread(matrix: np.ndarray, lengths: np.ndarray, known: np.ndarray) -> None:
         known |= found
 
 
-def _even(f: Values, direction: np.ndarray, rows: np.ndarray) -> float | None:
+def _even_factor(f: Values, direction: np.ndarray, rows: np.ndarray) -> float | None:
     """Factor of a direction at which the even part of some row reaches `rows`; None if there is none."""
     direction = direction * np.random.default_rng(5).uniform(0.5, 1.0, len(direction))
     with np.errstate(all="ignore"):

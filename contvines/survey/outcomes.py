@@ -112,7 +112,7 @@ def _without_branch(found: Findings, simulated: bool = True) -> list[tuple[float
 
 def covered(found: Findings) -> dict[str, float]:
     """Return the share of the interval in which a stable response is known, from a branch or by simulation; nan if stability is not computed."""
-    if not _judged(found.graph):
+    if not _has_stability(found.graph):
         return {"covered": np.nan}
     low, high = found.graph.within
     return {"covered": 1.0 - sum(b - a for a, b in _unknown_parts(found)) / (high - low)}
@@ -131,7 +131,7 @@ def unknown(found: Findings) -> str:
     The text is empty if stable motions cover the interval and simulation found no motion without a branch, and if stability is not computed.
     """
     graph = found.graph
-    if not _judged(graph):
+    if not _has_stability(graph):
         return ""
     name, unit = graph.parameter, graph.units.get(graph.parameter, "")
     reasons, number = [], figures_in(graph.within)
@@ -159,7 +159,7 @@ def unknown(found: Findings) -> str:
     return "; ".join(reasons)
 
 
-def _judged(graph: Graph) -> bool:
+def _has_stability(graph: Graph) -> bool:
     """Whether the stability of any solution is computed."""
     return any(stable is not None for branch in graph.branches.values() for _, _, stable in branch.pieces())
 

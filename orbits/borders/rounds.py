@@ -191,7 +191,7 @@ class Rounds(NamedTuple):
         ):
             if self.linear:
                 virtual = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
-            elif self.further is not None and _lasts(-low, -before[0]) and _lasts(high, before[1]):
+            elif self.further is not None and _stays(-low, -before[0]) and _stays(high, before[1]):
                 virtual = key[0] * self.error * max(float(np.abs(product).max()), old * new) < ROUNDING.sure
             else:
                 virtual = False
@@ -207,7 +207,7 @@ class Rounds(NamedTuple):
             return math.inf
 
 
-def _lasts(near: float, further: float) -> bool:
+def _stays(near: float, further: float) -> bool:
     """Whether a determinant that is positive near the border stays positive up to it: it grows towards the border, or is constant."""
     return near > ROUNDING.decided and further - near <= ROUNDING.decided * near
 

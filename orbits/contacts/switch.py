@@ -208,11 +208,11 @@ def withdrawn(site: Site, j: int) -> list[Change]:
     for k in frictions:
         for at in range(max(0, site.place - 2), min(len(word), site.place + 3)):
             if site.is_event(at, k, TURN) or (site.is_event(at, k, STICK) and site.is_event(at + 1, k, SLIP)):
-                found += _withdrawn(site, j, at)
+                found += _withdrawn_at(site, j, at)
     return found
 
 
-def _withdrawn(site: Site, j: int, at: int) -> list[Change]:
+def _withdrawn_at(site: Site, j: int, at: int) -> list[Change]:
     """Do `withdrawn` for the turn or stick `at`."""
     word = site.word
     stop = at + 1 if word.letter(at).kind == TURN else at + 2

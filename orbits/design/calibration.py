@@ -97,7 +97,7 @@ def from_impacts(
         late = (instants - instants[0]) - elapsed[:used]
         return late - late.mean()
 
-    found = fit(residuals, _nearer(residuals, unknown, bounds, count), bounds, confidence, spent=1)
+    found = fit(residuals, _improved(residuals, unknown, bounds, count), bounds, confidence, spent=1)
     between = float(elapsed[-1]) / (count - 1)
     if found.scatter > LARGEST_SCATTER * between:
         raise ParameterError(
@@ -108,7 +108,7 @@ def from_impacts(
     return replace(found, between=between)
 
 
-def _nearer(
+def _improved(
     residuals: Callable[..., np.ndarray],
     guess: Mapping[str, float],
     limits: Mapping[str, tuple[float, float]],

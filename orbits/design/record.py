@@ -162,7 +162,7 @@ def _drift(x, v, mass, rate, force, slope, t):
     return y + offset + slope * t, yr + slope
 
 
-def _at(state, mode, rate, eps, pull, a0, a1, t):
+def _state_after(state, mode, rate, eps, pull, a0, a1, t):
     """Return (x1, v1, x2, v2) after time t in a mode (-1, +1: sliding; 0: sticking), with the base's acceleration a0 + a1 t."""
     x1, v1, x2, v2 = state
     if mode == 0:
@@ -175,7 +175,7 @@ def _at(state, mode, rate, eps, pull, a0, a1, t):
 
 def _watch(state, mode, rate, eps, pull, a0, a1, t, event):
     """Return the function that vanishes at event `event` after time t: 0, 1 distances to the walls; 2 relative speed; 3, 4 margins of friction while sticking."""
-    x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, t)
+    x1, v1, x2, v2 = _state_after(state, mode, rate, eps, pull, a0, a1, t)
     if event == 0:
         return 1.0 - (x1 - x2)
     if event == 1:
@@ -281,7 +281,7 @@ def _march_plainly(
                         else:
                             high = middle
                     first, met = high, event
-                x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, first)
+                x1, v1, x2, v2 = _state_after(state, mode, rate, eps, pull, a0, a1, first)
                 lost[2] += rate * 0.5 * (state[1] * state[1] + v1 * v1) * first
                 if mode != 0:
                     lost[1] += eps * pull * abs((x1 - x2) - (state[0] - state[2]))

@@ -90,12 +90,12 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
         pivot_rows.append(_eliminate(rows, k))
         running = [row[2 * k :] if i == last else [*row[k : 2 * k], *nothing, *row[2 * k :]] for row in rows]
     pivots = _eliminate(running, k + m)
-    solution = _back(pivots, k + m, [])
+    solution = _back_substitute(pivots, k + m, [])
     head, extra = solution[:k], solution[k:]
     nodes: list[list[Any]] = [head]
     following = nothing
     for pivots in reversed(pivot_rows):
-        following = _back(pivots, k, [*following, *head, *extra])
+        following = _back_substitute(pivots, k, [*following, *head, *extra])
         nodes.insert(1, following)
     return nodes, extra
 
@@ -121,7 +121,7 @@ def _eliminate(rows: list[list[Any]], count: int) -> list[list[Any]]:
     return pivots
 
 
-def _back(pivots: list[list[Any]], count: int, later: list[Any]) -> list[Any]:
+def _back_substitute(pivots: list[list[Any]], count: int, later: list[Any]) -> list[Any]:
     """Solve `count` pivot rows by back substitution; the `later` values are those of all later unknowns."""
     result: list[Any] = [0] * count
     for column in reversed(range(count)):

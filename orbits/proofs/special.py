@@ -261,7 +261,7 @@ def vanishing_margin(motif: Motif, p: Mapping[str, arb], nodes: Nodes, name: str
         raise Obstacle(Step.EXISTENCE, Remedy.OTHER_WORD, event, "a flight of no duration")
     if name in ("hold", "reversal"):
         candidates = [Vanishing(name, event, side) for side in (1, -1)]
-        least = [_least(motif, p, nodes, vanishing) for vanishing in candidates]
+        least = [_lowest_minimum(motif, p, nodes, vanishing) for vanishing in candidates]
         found = [(pair[0], vanishing) for pair, vanishing in zip(least, candidates) if pair is not None]
         return min(found, key=lambda pair: pair[0])[1] if found else candidates[0]
     if name in ("turn", "stick"):
@@ -273,7 +273,7 @@ def vanishing_margin(motif: Motif, p: Mapping[str, arb], nodes: Nodes, name: str
 
 def touching_phase(motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: Vanishing) -> arb:
     """Return the approximate phase of the margin's minimum inside its flight."""
-    least = _least(motif, p, nodes, vanishing)
+    least = _lowest_minimum(motif, p, nodes, vanishing)
     if least is None:
         raise Obstacle(
             Step.REFINEMENT, Remedy.START, vanishing.event, "the margin has no minimum inside this flight"
@@ -281,7 +281,7 @@ def touching_phase(motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: 
     return least[1]
 
 
-def _least(
+def _lowest_minimum(
     motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: Vanishing
 ) -> tuple[float, arb] | None:
     """Return value and phase of a margin's lowest minimum inside its flight; None without a minimum."""

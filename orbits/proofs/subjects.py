@@ -118,7 +118,7 @@ def of_point(
     if kind in PLAIN:
         return of_orbit(orbit, bits)
     machine = orbit.model.name
-    varying = _moved(problem)
+    varying = _varying_numbers(problem)
     given = _parameters(machine, _numbers(orbit), {})
     if not len(orbit.word):
         motif = Motif(machine, (), (), 1, False, False)
@@ -177,7 +177,7 @@ def of_branch(
         )
     orbit = problem.orbit(points[0], float(values[0]))
     machine, word = orbit.model.name, problem.word
-    varying = _moved(problem)
+    varying = _varying_numbers(problem)
     given = _parameters(machine, _numbers(orbit), {})
     motif = motif_of(
         machine, word.events, word.mode_codes.tolist(), problem.periods, problem.symmetric, word.frictionless
@@ -302,7 +302,7 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
     return {name: changed.get(name, own[name]) for name in names}
 
 
-def _moved(problem: Motions) -> Varying:
+def _varying_numbers(problem: Motions) -> Varying:
     """Return the machine's numbers that depend on the problem's parameter."""
     names = parameter_names(problem.model.name)
     varied = {

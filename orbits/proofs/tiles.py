@@ -129,12 +129,12 @@ def lay(along: Along, center: str, half: str, z: Nodes, value: arb) -> Tile | No
     place = None if along.place is None else along.place[0] * along.k + along.place[1]
     try:
         along.at = Jet(ball(center), {0: arb(1)})
-        slopes = [texts((-v).mid(), 30)[0] for v in _flat(_solved(along, m, [p], _tangent(along)))]
+        slopes = [texts((-v).mid(), 30)[0] for v in _joined(_solved(along, m, [p], _tangent(along)))]
         slopes[-1 if place is None else place] = "1"
         s = [ball(text) for text in slopes]
         F = _residual(along, m, p, s, ball(center), span)
         least = arb(2) ** (-60) * arb(half).min(arb(1))
-        radii = _levelled([1.5 * SLACK * v.abs_upper() + least for v in _flat(_solved(along, m, [p], F))])
+        radii = _levelled([1.5 * SLACK * v.abs_upper() + least for v in _joined(_solved(along, m, [p], F))])
         for _ in range(ROUNDS):
             decimals = [upper_text(r) for r in radii]
             decimals[-1 if place is None else place] = "0"
@@ -144,7 +144,7 @@ def lay(along: Along, center: str, half: str, z: Nodes, value: arb) -> Tile | No
             ]
             nodes = [triples[i : i + along.k] for i in range(0, len(triples) - 1, along.k)]
             tile = Tile(half, nodes, triples[-1], along.place, [])
-            step = _flat(_solved(along, tile.balls(), [tile.values()], F))
+            step = _joined(_solved(along, tile.balls(), [tile.values()], F))
             fixed = len(step) - 1 if place is None else place
             if all(
                 SLACK * v.abs_upper() < arb(r) for j, (v, r) in enumerate(zip(step, decimals)) if j != fixed
@@ -169,7 +169,7 @@ def _levelled(radii: list[arb]) -> list[arb]:
     return [r.max(LEVEL * largest) for r in radii]
 
 
-def _flat(solution: Solution) -> list[arb]:
+def _joined(solution: Solution) -> list[arb]:
     return [*(v for node in solution[0] for v in node), *solution[1]]
 
 

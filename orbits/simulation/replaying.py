@@ -235,7 +235,7 @@ def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
     run, message = go_round(simulator, word, nodes[0], len(word))
     if run is None or message:
         return Replay(np.inf, message, motion=_motion(simulator, orbit))
-    error = float(np.abs(run.nodes - _following(nodes, orbit.periods)).max())
+    error = float(np.abs(run.nodes - _next_nodes(nodes, orbit.periods)).max())
     if not thorough:
         return Replay(error, "")
     word, nodes = _from_freest(word, nodes, orbit.periods)
@@ -306,7 +306,7 @@ def _slope(simulator: Simulator, word: Word, node: np.ndarray, j: int, size: flo
     return (ends[0] - ends[1]) / (2.0 * size)
 
 
-def _following(nodes: np.ndarray, periods: int) -> np.ndarray:
+def _next_nodes(nodes: np.ndarray, periods: int) -> np.ndarray:
     """Nodes of a cycle from the second to the return of the first."""
     claimed = np.roll(nodes, -1, axis=0)
     claimed[-1, 0] += TWO_PI * periods
@@ -338,7 +338,7 @@ def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.
 
 def _tracked(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, wanted: int) -> int:
     """Number of simulated rounds, of `wanted` ones, that stay on the orbit."""
-    n, claimed = len(word), _following(nodes, periods)
+    n, claimed = len(word), _next_nodes(nodes, periods)
     run = go_round(simulator, word, nodes[0], wanted * n).run
     found = nodes[:0] if run is None else run.nodes
     for c in range(len(found) // n):

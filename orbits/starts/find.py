@@ -331,7 +331,9 @@ def directed(text: str | Word, reading: Word, nodes: np.ndarray) -> Word:
         [{"L": 1.0, "R": -1.0}.get(letter, w) for letter, w in zip(reading.events, nodes[:, 1])]
     )
     directions = np.sign(np.roll(places, -1) - places)
-    found = max((reading, *_others(reading, directions)), key=lambda word: _agreement(word, directions))
+    found = max(
+        (reading, *_other_directions(reading, directions)), key=lambda word: _agreement(word, directions)
+    )
     if found.modes == reading.modes or _agreement(found, directions) < np.count_nonzero(found.modes):
         return reading
     stated = not isinstance(text, str) or "+" in text or "-" in text or "−" in text
@@ -347,7 +349,7 @@ def _agreement(word: Word, directions: np.ndarray) -> float:
     return float(np.dot(word.modes, directions))
 
 
-def _others(reading: Word, directions: np.ndarray) -> list[Word]:
+def _other_directions(reading: Word, directions: np.ndarray) -> list[Word]:
     """Words with the same letters and other directions of flight."""
     found = [reading.mirror()] if reading.impact_free else []
     slips = [

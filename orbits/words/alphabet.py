@@ -267,7 +267,7 @@ def read(
     if not items:
         if alphabet.alone is not None:
             return (), ()
-        return (), (_mode_of(mode, alphabet, quoted) if mode else _open(alphabet, absent),)
+        return (), (_mode_of(mode, alphabet, quoted) if mode else _mode_without_events(alphabet, absent),)
     letters = alphabet.letters
     expanded: list[tuple[str, str | None]] = []
     notes: list[str | None] = []
@@ -354,7 +354,7 @@ def _mode_of(note: str, alphabet: Alphabet, quoted: str) -> tuple[int, ...]:
     return tuple(mode)
 
 
-def _open(alphabet: Alphabet, absent: frozenset[int]) -> tuple[int, ...]:
+def _mode_without_events(alphabet: Alphabet, absent: frozenset[int]) -> tuple[int, ...]:
     """Default mode of a word without events: walls free, frictions sticking, switches positive."""
     mode = []
     for j, contact in enumerate(alphabet.contacts):

@@ -135,7 +135,7 @@ class Reduction:
         return self
 
     # ------------------------------------------------------------------ residual of the homological equations
-    def _rest(self, w: np.ndarray) -> np.ndarray:
+    def _residual(self, w: np.ndarray) -> np.ndarray:
         """Return the residual of the homological equations with the current H and N at points w, shape (n, N)."""
         points, drift = np.real(values_of(self.H, w)), values_of(self.N, w)
         if not self.forms.flow:
@@ -154,7 +154,7 @@ class Reduction:
         sizes = np.abs(points).max(axis=1) * max(float(np.abs(self.vectors).max()), TINY)
         radii = self.radius / sizes
         with np.errstate(over="ignore", invalid="ignore"):  # tested below
-            samples = self._rest(
+            samples = self._residual(
                 ((radii[:, None] * chebyshev_nodes(NODES))[:, :, None] * points[:, None, :]).reshape(
                     -1, self.m
                 )

@@ -85,7 +85,7 @@ class Settling(NamedTuple):
                 begin = self._natively(machine, begin, states, found)
                 continue
             if found["outcome"][begin] == WANDERING:
-                self._one(states[begin], begin, found)
+                self._settle_one(states[begin], begin, found)
             begin += 1
 
     def _natively(self, machine: int, begin: int, states: np.ndarray, found: dict[str, np.ndarray]) -> int:
@@ -97,7 +97,7 @@ class Settling(NamedTuple):
         settings = address(self.params), self.transient, self.longest, self.tolerance
         return work(machine, begin, len(states), written(states), *settings, *results, WORK)
 
-    def _one(self, state: np.ndarray, i: int, found: dict[str, np.ndarray]) -> None:
+    def _settle_one(self, state: np.ndarray, i: int, found: dict[str, np.ndarray]) -> None:
         """Run motion number i in plain Python: the reference of `native/many_starts.hpp`."""
         engine, params, room = self.engine, self.params, buffers(self.engine, BUFFER)
         if state[TURNS] < 0.5:

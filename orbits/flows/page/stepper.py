@@ -249,7 +249,7 @@ class Stepper:
             if rate < 0.0:
                 self._due.append(other)
         if resting:
-            self._rest(resting if self.modes[wall] != HELD else [*resting, wall], near)
+            self._remove_gap_rates(resting if self.modes[wall] != HELD else [*resting, wall], near)
         return kind
 
     def _piled_up(self, wall: int, rate: float) -> bool:
@@ -260,7 +260,7 @@ class Stepper:
         self.modes, self._fresh = modes, fresh
         return push < 0.0 and rate * rate < EVENTS.simultaneous * abs(push) * (1.0 + np.abs(self.state).max())
 
-    def _rest(self, walls: list[int], near: float) -> None:
+    def _remove_gap_rates(self, walls: list[int], near: float) -> None:
         """Remove the gap rates of walls that hold; each correction changes the other rates, so it is repeated."""
         for _ in range(CORRECTIONS):
             moving = [wall for wall in walls if abs(self._gap_rate(wall)) > near]
@@ -332,9 +332,9 @@ class Stepper:
             tools, before, began = self._tools, self.state.copy(), self.clock
             if self._fresh:
                 self._fresh = False
-                self._leave(min(self.clock + EVENTS.leave, end))
+                self._leave_surface(min(self.clock + EVENTS.leave, end))
             elif self._hop:
-                self._rise(end)
+                self._to_top_of_hop(end)
             self._hop = 0.0
             if not end > self.clock:
                 self._rebase()
@@ -344,7 +344,7 @@ class Stepper:
                 self._rebase()
                 return None
             if place < 0:
-                raise SimulationError(self._lost(before, began))
+                raise SimulationError(self._reason_of_divergence(before, began))
             guard = self._first(tools.guards[place])
             event = self._happened(guard)
             if event is not None:
@@ -383,7 +383,7 @@ class Stepper:
             or (value < -touch and guard.kind in (SLIP, RELEASE))
         ]
 
-    def _lost(self, state: np.ndarray, clock: float) -> str:
+    def _reason_of_divergence(self, state: np.ndarray, clock: float) -> str:
         """Return the reason why a flight from a state gave no finite number."""
         name = repr(self.machine.name)
         for x, c in ((state, clock), (self.state, self.clock)):
@@ -392,7 +392,7 @@ class Stepper:
                 return f"the motion of {name} cannot go on: {found}; start elsewhere, or write the formula so that it is a number there"
         return f"the motion of {name} left the range of numbers: give parameters and a start of moderate size"
 
-    def _leave(self, end: float) -> None:
+    def _leave_surface(self, end: float) -> None:
         """Leave a surface on which a guard starts without a rate, unless another event happens first."""
         if not end > self.clock:
             return
@@ -405,7 +405,7 @@ class Stepper:
                     self._opened(guard.contact)
                 return
 
-    def _rise(self, end: float) -> None:
+    def _to_top_of_hop(self, end: float) -> None:
         """Move to the top of a short hop.
 
         The end of the hop is searched from there, because a zero at the beginning of a flight can hide a second one close to it.

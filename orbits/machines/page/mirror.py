@@ -49,7 +49,7 @@ class MirrorImage:
         e = self.equations = equations
         self.images = _images(e, pairs)
         draws = Draws(e, params)
-        self.turned = self._turned(draws)
+        self.turned = self._turned_switches(draws)
         # name, formula, formula whose mirror image equals it, and that image's sign
         rows: list[tuple[str, Symbol, Symbol, float]] = []
         for name, kind, j, table in e.formulas():
@@ -61,7 +61,7 @@ class MirrorImage:
         self._own, self._image, self._signs = Values(e.layout, own), Values(e.layout, images), np.array(signs)
         self._holds = lru_cache(maxsize=256)(self._checked)
         for name, values, image_values in zip(names, *(table.T for table in self._values_of_both(draws))):
-            wrong = self._wrong(values, image_values)
+            wrong = self._worst_state(values, image_values)
             if wrong is not None:
                 state = ", ".join(f"{n} = {v:.4g}" for n, v in zip(e.states, draws.states[wrong]))
                 phase_text = f", phase = {draws.clock[wrong]:.4g}" if e.phase_rate is not None else ""
@@ -81,7 +81,7 @@ class MirrorImage:
             size = abs(float(params[varying])) or 1.0
             draws.params[:, varying] += VARIED * size * np.linspace(-1.0, 1.0, DRAWS)
         own, image = self._values_of_both(draws)
-        return all(self._wrong(a, b) is None for a, b in zip(own.T, image.T))
+        return all(self._worst_state(a, b) is None for a, b in zip(own.T, image.T))
 
     def _values_of_both(self, draws: Draws) -> tuple[np.ndarray, np.ndarray]:
         """Return values of all formulas at random states, and values of their images, both of shape (DRAWS, count)."""
@@ -96,7 +96,7 @@ class MirrorImage:
             image = self._image(-draws.states, draws.clock + np.pi, np.hstack([draws.params, signs]))
         return own, image * self._signs
 
-    def _turned(self, draws: Draws) -> frozenset[int]:
+    def _turned_switches(self, draws: Draws) -> frozenset[int]:
         """Return the switches whose surface is closer to minus its image."""
         e, found = self.equations, set()
         for j, k in self.images.items():
@@ -108,7 +108,7 @@ class MirrorImage:
         return frozenset(found)
 
     @staticmethod
-    def _wrong(own: np.ndarray, image: np.ndarray) -> int | None:
+    def _worst_state(own: np.ndarray, image: np.ndarray) -> int | None:
         """Return the state at which a formula and its image differ most; None if they agree."""
         gap = np.abs(own - image)
         agree = np.nanmax(gap) <= FORMULAS.same * (1.0 + np.nanmax(np.abs(own)))

@@ -131,11 +131,13 @@ def _gap_demands(e: Equations, units: Mapping[str, str]) -> list[Demand]:
             continue
         walls = " and ".join(repr(e.contacts[k].name) for k in (i, j))
         room = e.gap[i] * (weight / size) + e.gap[j]
-        found.append(Demand(room, _open, f"walls {walls} leave no room between them{_way_out(room, units)}"))
+        found.append(
+            Demand(room, _open, f"walls {walls} leave no room between them{_least_value(room, units)}")
+        )
     return found
 
 
-def _way_out(room: Symbol, units: Mapping[str, str]) -> str:
+def _least_value(room: Symbol, units: Mapping[str, str]) -> str:
     """Return, if the space depends linearly on one parameter, the value from which there is some."""
     names = [name for name in variables_of(room) if name.startswith("p_")]
     if len(names) == 1:

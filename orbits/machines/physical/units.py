@@ -119,12 +119,12 @@ def read(quantity: Quantity, value: object) -> tuple[float, str]:
     given = f"{quantity.name} = {value!r}"
     hint = f'for example "{quantity.example}"' if quantity.unit else f"for example {quantity.example}"
     if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise QuantityError(f"{given} is no quantity; {hint}{_many(quantity, value)}")
+        raise QuantityError(f"{given} is no quantity; {hint}{_survey_hint(quantity, value)}")
     if not isinstance(value, str):
         if quantity.unit and value != 0:
             raise QuantityError(f"{given} has no unit; {hint}")
         return _finite(quantity, float(value), given, hint), unit_of(quantity)
-    number, unit = _parsed(quantity.name, value, quantity.unit, hint + _many(quantity, value), hint)
+    number, unit = _parsed(quantity.name, value, quantity.unit, hint + _survey_hint(quantity, value), hint)
     if not quantity.unit:
         factor = size(unit, "") if unit else 1.0
         if factor is None:
@@ -134,10 +134,10 @@ def read(quantity: Quantity, value: object) -> tuple[float, str]:
     if factor is None:
         kind = _KINDS.get(quantity.unit, quantity.unit)
         other = next((name for kind_unit, name in _KINDS.items() if size(unit, kind_unit) is not None), None)
-        meant = _meant(unit, quantity)
+        meant = _spelling_hint(unit, quantity)
         if other is None:
             raise QuantityError(
-                f"{given}: {unit!r} is no unit of {_with_article(kind)}{meant}; {hint}{_many(quantity, value)}"
+                f"{given}: {unit!r} is no unit of {_with_article(kind)}{meant}; {hint}{_survey_hint(quantity, value)}"
             )
         fault = f"{unit!r} is the unit of {_with_article(other)}{meant}"
         raise QuantityError(f"{given}: {fault}, but {quantity.name} is {_with_article(kind)}; {hint}")
@@ -195,14 +195,14 @@ def _parsed(name: str, value: str, kind: str, otherwise: str, with_unit: str) ->
     return float(match[1]), match[2]
 
 
-def _many(quantity: Quantity, value: object) -> str:
+def _survey_hint(quantity: Quantity, value: object) -> str:
     """Return a hint on surveys if several values are given in a quantity's place, else an empty text."""
     if not (isinstance(value, list) or _SPREAD.search(str(value))):
         return ""
     return f"; several values, or a tolerance, go into [survey], as vary.{quantity.name} = {{ uniform = [from, to] }}"
 
 
-def _meant(unit: str, quantity: Quantity) -> str:
+def _spelling_hint(unit: str, quantity: Quantity) -> str:
     """Return " (did you mean ...?)" if a usual unit differs in capitals or in one letter, else an empty text."""
     usual = [unit_of(quantity), *_USUAL.get(quantity.unit, ())]
     similar = [one for one in usual if one.lower() == unit.lower()]

@@ -99,9 +99,11 @@ class Oscillation:
     def _near(self, tau: Number) -> Point:
         h, z = self.derivatives()
         d = [a + b for a, b in zip(h, z)]
-        mean, bend = d[2] + _beyond(d, 1, tau), tau * _beyond(d, 0, tau)
+        mean, bend = d[2] + _remainder(d, 1, tau), tau * _remainder(d, 0, tau)
         h2, z2, h3, z3 = (
-            series[k] + tau * (series[k + 1] + _beyond(series, k, tau)) for k in (2, 3) for series in (h, z)
+            series[k] + tau * (series[k + 1] + _remainder(series, k, tau))
+            for k in (2, 3)
+            for series in (h, z)
         )
         return Point(tau * d[1] + bend, tau * mean, mean, h2, z2, h3, z3, bend)
 
@@ -168,7 +170,7 @@ class Oscillation:
             yield start
 
 
-def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
+def _remainder(derivatives: list[Number], order: int, t: Number) -> Number:
     """Return (f(t) - f(0))/t - f'(0) for the derivative `order` of q1, from higher derivatives."""
     total = 0.0 * derivatives[order]
     for k in range(8, order + 1, -1):
