@@ -295,7 +295,6 @@ def study_schema() -> dict[str, Any]:
 
     kinds = [_titled(inlined(catalogue_model(name)), f"the machine {name}") for name in NAMES]
     kinds += [schema for schema in map(_physical, NAMES) if schema is not None]
-    kinds = [_with_conditions(kind) for kind in kinds]
     own = [
         _for_python_files(_with_units(inlined(PageSections)), "a machine of a Python file"),
         _for_python_files(inlined(FlowSections), "a flow of a Python file"),
@@ -304,7 +303,10 @@ def study_schema() -> dict[str, Any]:
         "$schema": DIALECT,
         "title": "a study of contvines",
         "type": "object",
-        "oneOf": [*kinds, {"title": "what a Python file declares", "anyOf": own}],
+        "oneOf": [
+            *map(_with_conditions, kinds),
+            {"title": "what a Python file declares", "anyOf": [*map(_with_conditions, own)]},
+        ],
     }
 
 
@@ -355,7 +357,7 @@ def _physical(name: str) -> dict[str, Any] | None:
         return None
     fields: dict[str, Any] = {
         key: Annotated[
-            str if entry.unit else str | float,
+            (str | Literal[0] if entry.zero or entry.signed else str) if entry.unit else str | float,
             Field(description=f"{entry.meaning}; for example {entry.example}"),
         ]
         for key, entry in quantities.items()

@@ -178,8 +178,8 @@ def _counted(data: dict[str, Any], machine: Machine) -> dict[str, Any]:
     found.pop("units", None)
     refuse(wrong)
     for section in ("model", "start"):
-        if section in found:
-            found[section] = numbers(_section(data, section), f"[{section}] ")
+        if isinstance(found.get(section), dict):
+            found[section] = numbers(found[section], f"[{section}] ")
     survey = _section(data, "survey")
     if isinstance(survey.get("vary"), dict):
         found["survey"] = {**survey, "vary": numbers(survey["vary"], "[survey] vary.")}

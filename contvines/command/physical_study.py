@@ -89,8 +89,11 @@ def _machine(
     places |= {key: "start" for key in start if key in quantities}
     given = {key: (model if section == "model" else start)[key] for key, section in places.items()}
     given |= {key: model[key] for key in ("contact_time",) if key in model}
+    unusual = model.get("unusual", False)
+    if not isinstance(unusual, bool):
+        wrong.append(f"[model] unusual = {unusual!r} is not true or false.")
     try:
-        machine = physical(name, given, bool(model.get("unusual", False)))
+        machine = physical(name, given, bool(unusual))
     except QuantityError as error:
         section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")
         return None, [*wrong, f"[{section}] {error}."]

@@ -14,7 +14,7 @@ from contvines.command.cli import COMMANDS
 from contvines.command.compose import first_orbit
 from contvines.command.study import StudyError, check_study, read_study
 from contvines.store import Store
-from tests.contvines.studies import EXAMPLES, TWO, data
+from tests.contvines.studies import EXAMPLES, SI, TWO, data
 
 Validator = pytest.importorskip("jsonschema").Draft7Validator
 SCHEMA = Validator(study_schema())
@@ -63,7 +63,9 @@ def test_what_the_commands_refuse_the_schema_refuses(path, change):
 
 
 def test_quantities_of_a_declared_machine_are_valid():
-    assert SCHEMA.is_valid(tomllib.loads(TWO))
+    assert SCHEMA.is_valid(data(TWO, "conditions.heat = 50")) and SCHEMA.is_valid(
+        data(SI, "model.base_amplitude = 0")
+    )
 
 
 # ---------------------------------------------------------------- help

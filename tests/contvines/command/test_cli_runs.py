@@ -49,9 +49,8 @@ def test_show_keeps_the_contract(run):
     }
     for part, names in fields.items():
         assert data[part] and all(set(names.split()) <= set(one) for one in data[part])
-    first = data["branches"][0]
-    assert (first["label"], first["word"], first["periods"], first["impacts"]) == ("B1", "LR", 1, 2)
-    assert first["symmetric"] is True and first["real"] is True
+    first = {"label": "B1", "word": "LR", "periods": 1, "impacts": 2, "symmetric": True, "real": True}
+    assert first.items() <= data["branches"][0].items()
     assert {"fold", "symmetry-breaking", "velocity-graze", "end"} <= {p["kind"] for p in data["special"]}
     for point in data["special"]:
         assert set(point["value"]) == {"amplitude"}

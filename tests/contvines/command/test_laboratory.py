@@ -127,6 +127,6 @@ def test_a_design_in_a_table_in_si_and_in_a_picture(told, run, tmp_path):
     assert found["xi"]["value"] == pytest.approx(np.sqrt(0.5282903 / 0.0637942), rel=1e-6)
     out = run.ok("design s.toml --plot map.png")
     assert (tmp_path / "map.png").stat().st_size > 20_000
-    assert "..." not in out.replace("…", "...")
+    assert "..." not in out
     for said in ("activation threshold", "ratio, large amplitude", "operating ratio", "q1_min", "mm", "xi"):
         assert said in out

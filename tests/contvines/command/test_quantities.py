@@ -51,8 +51,8 @@ def test_quantities_of_a_declared_machine_are_numbers_in_its_units():
         'survey.outcomes = ["largest:peak_force", "largest:max_q"]',
         TWO,
     )
-    loose = {name: read.loose[name] for name in ("clearance_1", "oscillator_mass", "friction_1")}
-    assert loose == pytest.approx({"clearance_1": 15.0, "oscillator_mass": 3.8, "friction_1": 0.2})
+    given = {"clearance_1": 15.0, "oscillator_mass": 3.8, "friction_1": 0.2}
+    assert read.loose == pytest.approx(read.loose | given)
     assert (read.within, read.sweep.within) == (pytest.approx((7.0, 9.0)), pytest.approx([8.0, 9.0]))
     assert read.bounds["max_q"] == pytest.approx((0.0, 30.0))
     assert read.survey.vary == {

@@ -19,9 +19,9 @@ def test_a_good_study_is_read_with_its_defaults():
     assert read.name == "absorber"
     given = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
     assert read.parameters == {"amplitude": 0.55, **given, "frequency": 1.0}
-    assert (read.start.word, read.start.periods, read.start.guess) == ("LR", 1, None)
-    assert (read.parameter, read.within) == ("amplitude", (0.2, 1.2))
-    assert read.options == {"depth": 3, "virtual": False, "settings": {}}
+    start = {"word": "LR", "periods": 1, "guess": None}
+    section = {"depth": 3, "virtual": False, "settings": {}, "parameter": "amplitude", "within": [0.2, 1.2]}
+    assert read.describe().items() >= {"start": start, "continue": section}.items()
 
 
 @pytest.mark.parametrize("start", ["no start", "no start\nstart.periods = 1"])
@@ -93,6 +93,7 @@ REFUSED = {
         "start.amplitude = 0.55": "[start] amplitude = 0.55: there is no such field",
     },
     SURVEYED: {
+        'model.unusual = "no"': "[model] unusual = 'no' is not true or false",
         'units = "imperial"': "units = 'imperial' is unknown; use \"si\"",
         'model.half_width = "20 m"': "[model] half_width = '20 m' is implausible",
         'model.half_width = "15 kg"': "[model] half_width = '15 kg': 'kg' is the unit of a mass",
@@ -133,6 +134,7 @@ REFUSED = {
         "model.wall_gapp = 2.0": "wall_gap",
     },
     SURVEYED_TWO: {
+        "start = -1": "start = -1 is not a section; write [start] on a line of its own",
         'model.clearance_1 = "15 kg"': "[model] clearance_1 = '15 kg': clearance_1 is shown in mm; for example",
         'model.clearance_1 = "-15 mm"': "[model] clearance_1 = -15 mm is out of range: walls 'L1' and 'R1' leave no room",
         'model.oscillator_mass = "0 kg"': "[model] oscillator_mass = 0 kg is out of range: the mass that moves with q_rate",
