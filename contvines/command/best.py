@@ -212,15 +212,18 @@ def _in_part(found: Survey, goal: Goal) -> str:
 
 def _picture(found: Survey, choice: Choice, goal: Goal) -> Figure:
     """Return the survey's picture with the choice, and the points tried in the search, marked."""
-    figure, names = found.plot(goal.outcome), list(found.plan.axes)
+    from ..plots.legends import place_legend
+    from ..shared.figures import styled
+
+    figure, names = found.plot(goal.outcome, legend=False), list(found.plan.axes)
     axes, red = figure.axes[0], "#b5121b"
     places = [(*(values[name] for name in names), outcome)[:2] for values, outcome in choice.tried]
     label = f"tried, {goal.over}" if len(names) == 1 else "tried"
     axes.plot(*zip(*sorted(places)), ".", color=red, label=label)
     x, y, *_ = *(choice.values[name] for name in names), choice.outcome
     axes.plot(x, y, "*", color=red, markersize=14, markeredgecolor="white", label="chosen")
-    if axes.get_legend() is not None:
-        axes.legend()
+    with styled():
+        place_legend(axes, (), True, True, usual="inside" if len(names) == 1 else "below")
     return figure
 
 

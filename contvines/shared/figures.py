@@ -192,6 +192,11 @@ def fit(figure: Figure) -> None:
     """Lay out a figure made here: long labels are broken into lines, ticks whose labels would touch are thinned out."""
     _prepare(*(axes for axes in figure.axes if not axes.yaxis.label.get_wrap()))
     settle(figure)
+    for axes in figure.axes:  # the layout leaves too much room for labels that may be broken
+        for label, room in ((axes.xaxis.label, axes.bbox.width), (axes.yaxis.label, axes.bbox.height)):
+            label.set_wrap(False)
+            label.set_wrap(bool(max(label.get_window_extent().size) > room))
+    settle(figure)
     thin_ticks(*figure.axes)
 
 
