@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..flows.cycles import CycleProblem
 from ..problems.protocol import Problem, Symmetry
 from .kernels import FOLD, GROWTH, PERIOD, VALID
@@ -156,6 +157,12 @@ class AdaptiveLocus(LocusProblem):
         return np.concatenate(
             [self.mesh.halved(u[..., : self.size], direction), u[..., self.size :]], axis=-1
         )
+
+
+def locus_of(description: Mapping[str, Any], trust: bool, kind: Kind) -> LocusProblem | None:
+    """Rebuild the locus of a user-defined kind from the result of `describe`; None if the user's functions cannot be found."""
+    on_a_mesh = "cycle" in description["problem"]
+    return (AdaptiveLocus if on_a_mesh else LocusProblem).rebuilt(description, trust, kind)
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AdaptiveLocus | None:

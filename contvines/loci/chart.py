@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
@@ -16,11 +16,14 @@ from ..journal import Resumable
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
 from ..shared.figures import PlotOptions
+from .adaptive import locus_of
 from .locus import Locus, PlanePoint, Turn
 from .regions import Region
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from ..bifurcation.kind import Kind
 
 
 class ChartOptions(PlotOptions, total=False):
@@ -195,7 +198,11 @@ class Chart(Resumable):
 
 
 def chart_from_entries(
-    entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True, trust: bool = False
+    entries: Mapping[str, Mapping[str, dict[str, Any]]],
+    *,
+    problems: bool = True,
+    trust: bool = False,
+    kinds: Iterable[Kind] = (),
 ) -> Chart:
     """Rebuild a chart from the entries that `Chart.entries` generated.
 
@@ -207,7 +214,10 @@ def chart_from_entries(
         Rebuild the problems of the loci, too.
     trust : bool
         Import functions that the file names; see :func:`contvines.problems.registry.rebuild`.
+    kinds : iterable of Kind
+        User-defined kinds, whose loci are rebuilt, too.
     """
+    by_name = {kind.name: kind for kind in kinds if callable(kind.locus)}
     entries = renamed(entries)
     head = dict(next(iter(entries["chart"].values())))
     head["parameters"] = tuple(head["parameters"])
@@ -220,7 +230,8 @@ def chart_from_entries(
         problem = None
         if problems:
             try:
-                problem = rebuild(parts["description"], trust)
+                description, kind = parts["description"], by_name.get(content["kind"])
+                problem = rebuild(description, trust) if kind is None else locus_of(description, trust, kind)
             except UnknownFactory:
                 problem = None
         entry["parameters"], entry["within"] = tuple(entry["parameters"]), tuple(entry["within"])

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import BY_NAME, checked
 from ..branches.special_point import SpecialPoint
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
@@ -32,11 +33,11 @@ def chart(
     journal: Journal | None = None,
     progress: Asked = None,
     interrupt: OnInterrupt = "raise",
+    kinds: Iterable[Kind] | None = None,
 ) -> Chart:
     """Make a chart of two parameters: a locus from every special point of a graph, and from the points of codimension two found on the loci.
 
-    The loci at which a real motion gains or loses its stability come first. Special points of user-defined kinds are left out; use :func:`locus`
-    for them.
+    The loci at which a real motion gains or loses its stability come first.
 
     Parameters
     ----------
@@ -62,6 +63,9 @@ def chart(
     interrupt : "raise" or "return"
         On Ctrl-C: raise :class:`contvines.Interrupted`, whose ``graph`` is the unfinished chart, or return the unfinished chart.
         ``contvines.resume(chart)`` continues it.
+    kinds : iterable of Kind, optional
+        As in :func:`contvines.diagram`: special points of user-defined kinds are followed if the kind has a `locus`, and zeros of their tests along loci
+        are points.
 
     Returns
     -------
@@ -76,16 +80,21 @@ def chart(
     """
     within = check_interval(within)
     bounds = check_interval(graph.within if bounds is None else bounds)
+    own_kinds = tuple(kind for kind in checked(kinds) if BY_NAME.get(kind.name) is not kind)
+    followed = {kind.name for kind in own_kinds if callable(kind.locus)}
     points = [
         point
         for point in graph.special.values()
-        if point.kind not in ("end", "user") and not of_own_kind(point) and (point.real or virtual)
+        if point.kind not in ("end", "user")
+        and (point.real or virtual)
+        and (not of_own_kind(point) or point.kind in followed)
     ]
     if not points:
         raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
 
     def start(stored: Journal, report: Tell | None) -> tuple[Chart, Callable[[], None]]:
-        run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), stored, report)
+        options = Settings.of(settings), stored, report, own_kinds
+        run = Charting(graph, over, within, bounds, virtual, *options)
 
         def carry_on() -> None:
             for point in sorted(points, key=lambda point: not _ends_stability(graph, point)):

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import kind_named
 from ..branches.solutions import on_segment
 from ..branches.special_point import SpecialPoint
@@ -25,7 +26,7 @@ from ..shared.numbers import TINY
 from .chart import Chart
 from .codimension_two import mark
 from .departures import leaving
-from .kernels import BRANCH, FOLD, MARGIN, PERIOD, condition
+from .kernels import BRANCH, FOLD, MARGIN, OWN, PERIOD, condition
 from .locus import Locus, PlanePoint
 from .problem import LocusProblem
 from .regions import KnownMotions, divide, together
@@ -88,7 +89,9 @@ class Charting:
         settings: Settings,
         journal: Journal,
         progress: Callable[[ChartProgress], None] | None,
+        kinds: Sequence[Kind] = (),
     ) -> None:
+        self.kinds = {kind.name: kind for kind in kinds}
         self.graph, self.over, self.within, self.bounds = graph, over, within, bounds
         self.widths = np.array([bounds[1] - bounds[0], within[1] - within[0]])
         self.virtual, self.settings, self.progress = virtual, settings, progress
@@ -137,7 +140,7 @@ class Charting:
         """Queue the locus of a special point of the graph."""
         check_start(point, self.over, self.within)
         try:
-            self.queue.append((candidate_of(point, self.over), 0))
+            self.queue.append((candidate_of(point, self.over, self.kinds.values()), 0))
         except (MemoryError, OSError):
             raise
         except Exception as error:
@@ -183,7 +186,7 @@ class Charting:
         """Return the locus of a candidate; None if it cannot be traced, with the reason added to ``refused``."""
         # a locus has the label of the special point at which it starts
         from_diagram = candidate.seed in self.graph.special
-        prefix = kind_named(candidate.kind).label
+        prefix = kind_named(candidate.kind, self.kinds).label
         label = candidate.seed if from_diagram else self.label(prefix)
         arguments = self.over, self.within, self.bounds, self.settings, label, self.virtual, self.journal
         try:
@@ -194,6 +197,7 @@ class Charting:
         if locus is None or len(locus) < 3:
             self.numbers[prefix] -= 0 if from_diagram else 1
             return None
+        locus.kinds = tuple(self.kinds.values())
         return locus
 
     def tell_points(self, label: str, count: int, value: float) -> None:
@@ -202,7 +206,7 @@ class Charting:
 
     def locus_through(self, candidate: Candidate) -> Locus | None:
         """Return the traced locus on which a candidate lies, or None."""
-        wanted = condition(candidate.problem, candidate.kind)
+        wanted = OWN if candidate.own_kind else condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
             problem, start = locus.problem, candidate
             if problem is None:

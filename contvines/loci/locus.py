@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..bifurcation.kind import Kind
-from ..bifurcation.kinds import critical
+from ..bifurcation.kinds import BY_NAME, critical
 from ..branches import Branch
 from ..branches.solutions import on_segment
 from ..continuation.engine import Engine
@@ -199,12 +199,21 @@ class Locus:
         """The points of codimension two, by label."""
         return {point.label: point for _, point in self._marked()}
 
+    @property
+    def _bare(self) -> str:
+        """Why there is no problem, and for users' kinds the way to it."""
+        known = self.kind in BY_NAME
+        way = (
+            ""
+            if known
+            else " (files do not keep kinds of your own: contvines.load(..., kinds=[*contvines.KINDS, yours]))"
+        )
+        return f"{self.label} was loaded without its problem{way}"
+
     def _marked(self) -> tuple[tuple[int, PlanePoint], ...]:
         if self.marked is None:
             if self.problem is None:
-                raise ValueError(
-                    f"{self.label} was loaded without its problem; its points of codimension two cannot be sought"
-                )
+                raise ValueError(f"{self._bare}; its points of codimension two cannot be sought")
             from .codimension_two import mark_locus
 
             self.marked = mark_locus(self)
@@ -244,7 +253,7 @@ class Locus:
         """
         branch, q = self.branch, self.branch.values
         if self.problem is None:
-            raise ValueError(f"{self.label} was loaded without its problem; nothing can be solved on it")
+            raise ValueError(f"{self._bare}; nothing can be solved on it")
         low, high = float(min(q.min(), value)), float(max(q.max(), value))
         wide = high - low or 1.0 + abs(high)
         engine = Engine(self.problem, (low - wide, high + wide), Settings())

@@ -335,18 +335,18 @@ class LocusProblem(ProblemDefaults):
         }
 
     @classmethod
-    def rebuilt(cls, description: Mapping[str, Any], trust: bool) -> Self | None:
-        """Rebuild a locus from the result of `describe`; None if the user's functions cannot be found."""
+    def rebuilt(
+        cls, description: Mapping[str, Any], trust: bool, own_kind: Kind | None = None
+    ) -> Self | None:
+        """Rebuild a locus from the result of `describe`, with its user-defined kind if it has one; None if the user's functions cannot be found."""
         from ..problems.registry import rebuild
 
         problem, (low, high) = rebuild(description["problem"], trust), description["bounds"]
         if problem is None:
             return None
         options = {name: description[name] for name in ("index", "borders", "reference", "masked")}
-        unit = description.get("unit", 1.0)
-        return cls(
-            problem, description["kind"], description["parameter"], bounds=(low, high), unit=unit, **options
-        )
+        options |= {"bounds": (low, high), "unit": description.get("unit", 1.0), "own_kind": own_kind}
+        return cls(problem, description["kind"], description["parameter"], **options)
 
 
 def check_second(problem: Problem, over: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from itertools import groupby
 from pathlib import Path
@@ -36,6 +36,7 @@ from .on_disk import (
 )
 
 if TYPE_CHECKING:
+    from ..bifurcation.kind import Kind
     from ..graph import Graph
     from ..journal import Kept
     from ..loci.chart import Chart
@@ -256,7 +257,9 @@ class Store:
             self._written[kind, key] = (scalars, arrays)
         return kind, key
 
-    def graph(self, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
+    def graph(
+        self, *, problems: bool = True, trust: bool = False, kinds: Iterable[Kind] = ()
+    ) -> Graph | Chart:
         """Return the graph (or chart) as of the last checkpoint.
 
         Parameters
@@ -265,6 +268,8 @@ class Store:
             Rebuild the problems of the branches; False: numbers only, which is faster.
         trust : bool
             Import the functions that the file names; see :mod:`contvines.problems.registry`.
+        kinds : iterable of Kind
+            User-defined kinds of special points whose loci are rebuilt, too.
 
         Raises
         ------
@@ -282,7 +287,7 @@ class Store:
             if "chart" in entries:
                 from contvines.loci.chart import chart_from_entries
 
-                found = chart_from_entries(entries, problems=problems, trust=trust)
+                found = chart_from_entries(entries, problems=problems, trust=trust, kinds=kinds)
             else:
                 found = graph_from_entries(entries, problems=problems, trust=trust)
             found.origin = {"study": self.study, "made": self.made}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, overload
@@ -13,6 +14,7 @@ from .database import Store
 from .on_disk import TAILS, check_header, draft_of
 
 if TYPE_CHECKING:
+    from ..bifurcation.kind import Kind
     from ..graph import Graph
     from ..loci.chart import Chart
 
@@ -99,7 +101,9 @@ def resume(path: Resumable | str | Path, fingerprint: str = "run from Python") -
 
 
 @hinting
-def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
+def load(
+    path: str | Path, *, problems: bool = True, trust: bool = False, kinds: Iterable[Kind] = ()
+) -> Graph | Chart:
     """Load the graph or chart from a .vines file; `finished` of the result tells whether its run had ended.
 
     Without `trust`, loading a file executes no code that the file names.
@@ -113,6 +117,8 @@ def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Gra
         Import user functions that the file names, for example those of an :class:`~contvines.AlgebraicProblem`. Without it they are
         available only if this program has already made a problem from them. Importing executes code: use it only for files whose
         author you trust.
+    kinds : iterable of Kind
+        Kinds of special points of your own, as given to `diagram`: files do not keep their functions, and the loci of a chart need them.
 
     Returns
     -------
@@ -125,4 +131,4 @@ def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Gra
     """
     check_header(Path(path), reading=True)
     with Store.open(path) as store:
-        return store.graph(problems=problems, trust=trust)
+        return store.graph(problems=problems, trust=trust, kinds=kinds)

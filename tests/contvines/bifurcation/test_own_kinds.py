@@ -108,9 +108,12 @@ def test_studies_name_kinds_in_a_file(tmp_path):
 
 
 # ------------------------------------------------------------------ in two parameters
-def test_neutral_saddles_are_followed(example):
-    """Along the locus trace and residual stay zero: solved anew by mpmath."""
-    locus = cv.locus(example()["NSD1"], over="delta", within=(0.05, 0.3))
+def test_neutral_saddles_are_followed(example, tmp_path):
+    """Along the locus, read from a file, trace and residual stay zero: solved anew by mpmath."""
+    point, file = example()["NSD1"], tmp_path / "c.vines"
+    cv.chart(example(), "delta", (0.05, 0.3), regions=False, kinds=[point.own_kind]).save(file)
+    locus = cv.load(file, kinds=[point.own_kind])["NSD1"]
+    assert point.value == pytest.approx(locus.at(0.15)[-1], abs=1e-9)
     assert locus.kind == "neutral-saddle" and not locus.points
     values = locus.values
     for (alpha, delta), (x, y, _) in zip(values[::7], locus.branch.points[::7]):
