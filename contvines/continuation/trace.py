@@ -83,7 +83,9 @@ def chunks(
     left = (bound - start.p) * np.sign(start.tangent[-1])
     if left <= engine.settled(start.p) and start.tangent[-1] != 0.0:
         end = engine.at_value(start.u, bound, start.tangent) if left > 0.0 else None  # shorter than any step
-        yield packed([start] if end is None else [start, end], Status.LEFT_INTERVAL)
+        finer = yield packed([start] if end is None else [start, end], Status.LEFT_INTERVAL)
+        if isinstance(finer, Finer):
+            yield from chunks(finer.engine, finer.image(start), journal, key, stop_at_border, first_step)
         return
     motion = MeshMotion(engine)
     try:

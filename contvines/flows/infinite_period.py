@@ -135,12 +135,13 @@ class Ending:
         self.speeds = np.linalg.norm(self.rates / self.units, axis=1)
 
     def exponent(self) -> float:
-        """Return d log(largest speed) / d log(period) along the branch; 0 if the period does not change."""
+        """Return d log(largest speed) / d log(period) along the branch, in the plane across the motion; 0 if the period does not change."""
         if not self.growth:
             return 0.0
         field, k = self.problem.field, int(np.argmax(self.speeds))
-        x, rate = self.x[k : k + 1], self.rates[k] / self.units
-        change = field.jacobian(x, self.p)[0] @ self.moved[k] + field.slope(x, self.p)[0] * self.tangent[-1]
+        x, rate, moved = self.x[k : k + 1], self.rates[k] / self.units, self.moved[k] / self.units
+        across = self.units * (moved - rate * (rate @ moved) / (rate @ rate))
+        change = field.jacobian(x, self.p)[0] @ across + field.slope(x, self.p)[0] * self.tangent[-1]
         return float(rate @ (change / self.units) / (rate @ rate) * self.period / self.growth)
 
     def saddles(self) -> tuple[Saddle, ...]:

@@ -27,6 +27,7 @@ CAUTION = 10.0  # distance at which an equilibrium counts as reached, in toleran
 DOUBLINGS = 12  # default for the doublings of the transient
 BRIEF = 100  # a simulation with no more integrator steps does not count as a doubling: in a stiff flow the first transients are very short
 MOST = 80  # most simulations that do not count
+STEPS = 1000  # number of integrator steps in which a motion must move by as many error tolerances
 FIRST_STEP = 0.001  # first step, in units of the time in which a motion moves by its size
 # step control: safety factor, smallest and largest ratio of successive steps
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
@@ -119,13 +120,24 @@ def _run(
 
     s, size = field.settings, field.lengths + np.abs(x)
     rate, largest = field.rate_at(p), s.endless * size
+    relative, absolute = (s.rough_relative, s.rough_absolute) if rough else (s.relative, s.absolute)
+    calls, before = 0, start
 
     def bounded(t: float, y: np.ndarray) -> np.ndarray:
+        nonlocal calls, before
         if not (np.abs(y) < largest).all():
             raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {t:.6g}")
-        return rate(t, y)
+        found, calls = rate(t, y), calls + 1
+        if calls % (STEPS * (1 + len(y))) == 0:  # at most 1 + d calls a step
+            speed = float((np.abs(found) / (absolute * size + relative * np.abs(y))).max())
+            if speed * (t - before) < STEPS and speed * (stop - start) > STEPS**2:
+                raise Irregular(
+                    f"the motion cannot be simulated beyond t = {t:.6g}: f jumps or has a pole at {np.array2string(y, precision=6)}, "
+                    "so that steps become shorter than its error allows; give a smooth f (friction and walls: a machine of orbits)"
+                )
+            before = t
+        return found
 
-    relative, absolute = (s.rough_relative, s.rough_absolute) if rough else (s.relative, s.absolute)
     found = solve_ivp(
         bounded,
         (start, stop),

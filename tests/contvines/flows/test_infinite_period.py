@@ -28,10 +28,13 @@ def test_a_loop_of_one_saddle_is_homoclinic_and_a_loop_of_two_heteroclinic():
     end, limit = limit_of(one)
     assert end.value == pytest.approx(0.0, abs=1e-8) and limit.limit is Limit.HOMOCLINIC
     assert "homoclinic to the saddle at (1, 0) with eigenvalues -1, 1;" in end.note
+    # another phase
+    end.tangent[: end.problem.states] += 1e6 * end.problem.field(end.orbit.states[:-1], end.value).ravel()
+    assert infinite_period(end.problem, end).limit is Limit.HOMOCLINIC
     end, limit = limit_of(two)
     assert end.value == pytest.approx(0.0, abs=1e-8) and limit.limit is Limit.HETEROCLINIC
-    places = sorted(saddle.place.tolist() for saddle in limit.saddles)
-    assert np.allclose(places, [[-1.0, 0.0], [1.0, 0.0]], atol=1e-6)
+    places = [saddle.place.tolist() for saddle in limit.saddles]
+    assert np.allclose(sorted(places), [[-1.0, 0.0], [1.0, 0.0]], atol=1e-6)
     assert [saddle.share for saddle in limit.saddles] == pytest.approx([0.5, 0.5], abs=1e-3)
     assert "heteroclinic cycle of the saddle at" in end.note and "(-1, 0)" in end.note
 
@@ -39,7 +42,7 @@ def test_a_loop_of_one_saddle_is_homoclinic_and_a_loop_of_two_heteroclinic():
 def test_two_coupled_oscillators_whose_common_rotation_stands_still():
     """z1' = (1 + 0.4 i - |z1|^2) z1 + k (z2 - z1), z2' = (0.5 - 0.5 i - |z2|^2) z2 + k (z1 - z2): the locked rotation is 0.4 |z1|^2 = 0.5 |z2|^2 at rest,
 
-    which with the equations of the amplitudes is 0.8 k^2 = 0.16 + (2 / 3 + 4 / 9 k)^2. Decays are much faster there than the rotation.
+    which with the equations of the amplitudes is 0.8 k^2 = 0.16 + (2 / 3 + 4 / 9 k)^2.
     """
     at_rest = max(np.roots([0.8 - 16 / 81, -16 / 27, -0.16 - 4 / 9]))
 
@@ -74,7 +77,7 @@ def round_the_circle(x, p):
     [({}, 1.0), ({"longest": 10.0}, np.sqrt(1.0 + 3.0 / 100.0))],  # w^2 - 1 = 3 at the start
 )
 def test_a_saddle_node_on_the_circle_ends_a_branch(settings, exact):
-    """Or the longest period that is asked for does, as a multiple of that of the start."""
+    """Or the longest period, as a multiple of that of the start."""
     orbit = cv.FlowProblem(round_the_circle, [1.0, 0.0], {"w": 2.0}, settings=settings).attractor()
     graph = cv.diagram(orbit, over="w", within=(0.5, 3.0), depth=0)
     branch, (end,) = graph["B1"], graph.of_kind("homoclinic")
