@@ -93,12 +93,10 @@ inline void join(const Scanned& s, whole i) {
 // Whether a real multiplier may have crossed the line on segment i and returned; see `_dips` in the reference.
 inline bool dips(const Scanned& s, whole i) {
     for (int side = 0; side < 2; side++) {
-        const double *product = s.products + side * s.count, sign = product[i] > 0.0 ? 1.0 : -1.0;
-        const auto rate = [&](whole k) { return sign * (product[k + 1] - product[k]) / s.lengths[k]; };
-        const double here = rate(i), before = i > 0 ? rate(i - 1) : NAN, behind = i + 2 < s.count ? rate(i + 1) : NAN;
-        if (!(sign * product[i + 1] > 0.0) || (here >= 0.0 && before >= 0.0) || (here <= 0.0 && behind <= 0.0)) continue;
-        const double fastest = larger(larger(fabs(here), fabs(before)), fabs(behind));
-        if (FASTER * s.lengths[i] * fastest >= fabs(product[i]) + fabs(product[i + 1])) return true;
+        const double *product = s.products + side * s.count, one = product[i], other = product[i + 1], sign = one > 0.0 ? 1.0 : -1.0;
+        const auto on = [&](whole k) { return sign * (product[k + 1] - product[k]) / s.lengths[k] * s.lengths[i]; };
+        const bool ahead = i > 0 && -on(i - 1) > fabs(one), back = i + 2 < s.count && on(i + 1) > fabs(other);
+        if (sign * other > 0.0 && (ahead || back)) return true;
     }
     return false;
 }

@@ -112,8 +112,8 @@ def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
 
     Test functions are the product of all (m - 1) / (1 + |m|), and of all (m + 1) / (1 + |m|) (of eigenvalues m / (1 + |m|)), with |m - 1| for complex
     ones: smooth where two multipliers exchange ranks or become a pair, and hardly influenced by those far away. Multipliers on the line to rounding are
-    left out. A product of one sign at both ends may have reached zero if it turns round, by its changes on the segment and its two neighbours, and if
-    `Locating.faster` times the fastest of these changes is at least the sum of its sizes at both ends.
+    left out. A product of one sign at both ends may have reached zero if a straight line through one of them and its other neighbour reaches zero
+    within the segment.
     """
     if engine.detection == "none" or not engine.m:
         return np.zeros(len(lengths), dtype=bool)
@@ -123,15 +123,11 @@ def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
         gaps = np.array([np.where(im == 0.0, re - place, np.hypot(re - place, im)) for place in places])
         parts = gaps / (1.0 + np.hypot(re, im))
         products = np.where(np.abs(parts) > LOCATING.past, parts, 1.0).prod(axis=2)
-        side = np.sign(products[:, :-1])
         rates = np.pad(np.diff(products) / lengths, ((0, 0), (1, 1)), constant_values=np.nan)
-        before, here, behind = rates[:, :-2] * side, rates[:, 1:-1] * side, rates[:, 2:] * side
-        turns = ~((np.minimum(before, here) >= 0.0) | (np.maximum(here, behind) <= 0.0))
-        fastest = np.fmax(np.fmax(np.abs(before), np.abs(behind)), np.abs(here))
-        way = LOCATING.faster * lengths * fastest
-        sizes = np.abs(products)
-        dips = (side * products[:, 1:] > 0.0) & turns & (way >= sizes[:, :-1] + sizes[:, 1:])
-    return dips.any(axis=0)
+        side, sizes = np.sign(products[:, :-1]), np.abs(products)
+        ahead = -rates[:, :-2] * side * lengths > sizes[:, :-1]
+        back = rates[:, 2:] * side * lengths > sizes[:, 1:]
+    return ((side * products[:, 1:] > 0.0) & (ahead | back)).any(axis=0)
 
 
 def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
