@@ -189,6 +189,11 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
+    if not real and pending.kind is Origin.START and pending.tangent is not None:
+        # the start is real; its correction by rounding is not, as the margins jump there: one without friction, over friction
+        border, z = engine.weights * pending.tangent, engine.join(pending.u, pending.p)
+        first = engine.polish(pending.u, pending.p, border, float(border @ z), pending.tangent) or first
+        real = float(engine.smallest_margin(first.row)) >= MARGIN
     if not real and pending.kind is Origin.BORDER:
         return None  # a virtual solution beyond the border: no crossing
     if not real and not run.virtual:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Cavity
+from orbits import Absorber, Cavity
 from orbits.borders.neighbours import BranchAtBorder, followed
 from orbits.borders.rewriting import edits_at
 from orbits.orbit import Orbit
@@ -42,17 +42,25 @@ def test_pure_sliding_is_real_up_to_the_walls(room, real):
 def test_what_does_not_come_near_a_border_says_nothing_about_it():
     """Solutions with the new word lay far from the border; the doubled motion that leaves there was taken for impossible (simulation follows it)."""
     machine = Cavity(
-        restitution_left=0.08292846201663458, restitution_right=0.5784702071020484,
-        friction=0.0, gravity=0.46012986147542956, slope=-0.13053441728369253,
-        distance_left=0.9764767238173357, distance_right=0.7522464460157717, mass_ratio=0.006,
+        restitution_left=0.0829284620, restitution_right=0.5784702071,
+        friction=0.0, gravity=0.4601298615, slope=-0.1305344173,
+        distance_left=0.9764767238, distance_right=0.7522464460, mass_ratio=0.006,
     )  # fmt: skip
-    nodes = [[0.45939839848482694, 0.20170061511834067], [6.969023212546848, 0.17645388394360836]]
-    start = machine.orbit("LL", 2, nodes, amplitude=0.19169698203192065)
+    start = machine.orbit("LL", 2, [[0.4594, 0.2017], [6.9690, 0.1765]], amplitude=0.191697)
     graph = cv.diagram(start, over="amplitude", within=(0.17, 0.3), depth=2)
     # from the motion with five events one with two rounds leaves, six events in the other one
     pairs = ([graph[end].orbit(5) for end in (link.source, link.target)] for link in graph.switches)
     doubled = next(b for a, b in pairs if (len(a.word), len(b.word)) == (5, 11))
     assert doubled.real and doubled.replay() < 1e-7
+
+
+def test_without_friction_a_motion_starts_over_friction():
+    """At friction 0 margins jump; with friction the simulation settles on `LRtt`."""
+    machine = Absorber(restitution=0.9, friction=0.0, gravity=0.27, mass_ratio=0.05)
+    graph = cv.diagram(machine.attractor(amplitude=0.9), over="friction", within=(0.0, 0.07), depth=1)
+    settled = machine.changed(friction=0.05).attractor(amplitude=0.9)
+    assert graph["B2"].range[1] == 0.07
+    assert graph["B2"].description["word"] == settled.word.text
 
 
 @pytest.mark.parametrize(("side", "walls"), [(1.0, ["R", "L"]), (-1.0, [])])
