@@ -48,7 +48,7 @@ def of_methods(tree):
 
 def imports(path, known):
     """Files of both packages that a file imports, at its top, inside functions (methods of `HELD` aside), or for types only."""
-    own, tree = module_of(path), ast.parse(path.read_text())
+    own, tree = module_of(path), ast.parse(path.read_bytes())
     package = own if path.name == "__init__.py" else own.rpartition(".")[0]
     comfort = set(of_methods(tree)) if own in HELD else set()
     for node in set(ast.walk(tree)) - comfort:

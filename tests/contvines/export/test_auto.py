@@ -12,7 +12,7 @@ HOPF = cv.FlowProblem(landau, [0.0, 0.0], {"mu": -0.5})
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("auto")
-    graph = cv.diagram(HOPF, over="mu", within=(-0.5, 1.0), progress=False)
+    graph = cv.diagram(HOPF, over="mu", within=(-0.5, 1.0))
     assert graph.export(path / "hopf.auto", "auto") == path / "b.hopf"
     graph.export(path / "hopf.dat", "xpp")
     return path

@@ -129,9 +129,3 @@ def test_cycles_near_rounding_have_the_periods_of_shooting_in_logarithms():
         orbit = cycles.orbit(i)
         period, _ = cycle(in_logarithms, np.log(orbit.states[0]), orbit.period, k=cycles.values[i])
         assert orbit.period == pytest.approx(period, rel=1e-6)
-
-
-def test_a_forced_flow_at_rest_keeps_its_mesh():
-    flow = cv.FlowProblem(lambda x, p, t: [p.a + x[0] ** 2], [-1.0], {"a": -1.0}, period=1.0)
-    graph = cv.diagram(flow, over="a", within=(-2.0, 1.0), depth=0)
-    assert graph["LP1"].value == pytest.approx(0.0, abs=1e-12) and graph["B1"].problem.intervals == 40

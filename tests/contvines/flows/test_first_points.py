@@ -41,7 +41,7 @@ def test_cycles_beside_a_strong_saddle_begin_where_rounding_tells_their_paramete
 
     z = np.sqrt(3.0 / (10.0 - 0.12))
     flow = cv.FlowProblem(rates, [-(10.0 - 0.12) * z, -z, z, 10.0 * z], {"a": 0.12})
-    graph = cv.diagram(flow, over="a", within=(0.1, 0.2), depth=1, progress=False)
+    graph = cv.diagram(flow, over="a", within=(0.1, 0.2), depth=1)
     assert {point.kind for point in graph.special.values()} == {"end", "hopf"}
     (born,), cycles = graph.of_kind("hopf"), graph["B2"]
     assert cycles.values.max() == pytest.approx(0.2)

@@ -21,7 +21,7 @@ def test_a_loop_of_one_saddle_is_homoclinic_and_a_loop_of_two_heteroclinic():
             return [x[1], force(x[0]) - (energy - height + p.m) * x[1]]
 
         flow = cv.FlowProblem(rates, [0.0, 0.0], {"m": 0.3}, settings={"homoclinic": 1e-5})
-        return cv.diagram(flow, over="m", within=(-0.1, 0.35), progress=False)
+        return cv.diagram(flow, over="m", within=(-0.1, 0.35))
 
     one = on(1 / 6, lambda x: x**2 / 2 - x**3 / 3, lambda x: x**2 - x)
     two = on(1 / 4, lambda x: x**2 / 2 - x**4 / 4, lambda x: x**3 - x)
@@ -57,7 +57,7 @@ def test_two_coupled_oscillators_whose_common_rotation_stands_still():
         ]
 
     flow = cv.FlowProblem(rates, [0.9, 0.1, 0.8, 0.3], {"k": 1.2})
-    graph = cv.diagram(flow.attractor(), over="k", within=(1.0, 4.0), progress=False)
+    graph = cv.diagram(flow.attractor(), over="k", within=(1.0, 4.0))
     end, limit = limit_of(graph)
     assert limit.limit is Limit.AT_REST and limit.value == pytest.approx(at_rest, abs=1e-5)
     assert abs(end.value - at_rest) < 1.1 * end.location_error

@@ -62,7 +62,7 @@ def test_cycles_of_forty_states_leave_each_of_two_hopf_points():
         return [*one, *other, *(-x[i] + 0.1 * x[0] for i in range(4, 40))]
 
     flow = cv.FlowProblem(rates, [0.0] * 40, {"p": -0.2})
-    graph = cv.diagram(flow, over="p", within=(-0.2, 1.0), depth=1, progress=False)
+    graph = cv.diagram(flow, over="p", within=(-0.2, 1.0), depth=1)
     assert [point.value for point in graph.of_kind("hopf")] == pytest.approx([0.0, 0.5], abs=1e-9)
     for label, name, begins in (("B2", "max x0", 0.0), ("B3", "max x2", 0.5)):
         branch = graph.branches[label]

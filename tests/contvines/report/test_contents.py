@@ -56,7 +56,7 @@ def test_a_problem_without_motions_has_a_page_too():
 
 def test_the_page_asks_for_nothing_and_names_cannot_break_out_of_it(graph, tmp_path):
     name = "</script><b>x.vines"
-    text = write_report(graph, tmp_path / "page.html", name).read_text()
+    text = write_report(graph, tmp_path / "page.html", name).read_text("utf-8")
     assert not re.search(r"""(?:src|href)\s*=\s*["'](?!data:)""", text) and name not in text
     packed = re.search(r'id="data" type="application/gzip">([^<]+)<', text)
     assert packed is not None
