@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from orbits.arguments import Reals
-from orbits.contacts import HIT, STICK, STROBE, Letter
+from orbits.contacts import HIT, STICK, STROBE, SWITCH, Letter
 from orbits.contacts.dry_friction import SLIDE_BACK, SLIDE_ON, STUCK, DryFriction
 from orbits.flows.equations import Equations
 from orbits.flows.trajectory import TWO_PI
@@ -35,8 +35,9 @@ def owned(word: Word, place: int) -> frozenset[int]:
 
     - the event's own contact;
     - contacts whose sign the impact sets;
-    - at a crossing of a switch next to an impact that may jump over it: that impact's wall. As crossing and impact coincide, the distance
-      vanishes with the time between them, which has a margin of its own;
+    - at a crossing of a switch next to an impact: that impact's wall, unless the impact sets the switch's sign; and at an impact next to a
+      crossing over which it does not jump: the switch. As crossing and impact coincide, these distances vanish with the time between
+      them, which has a margin of its own;
     - at an event of a switch whose surface moves with a friction's velocity: that friction, because the velocity is the strength of the
       crossing; and at a turn or stick of the friction next to the crossing: the switch, whose distance vanishes with the time between them.
     """
@@ -49,8 +50,11 @@ def owned(word: Word, place: int) -> frozenset[int]:
     for near in (word.letter(place - 1), word.letter(place + 1)):
         if (near.contact, letter.contact) in rides:
             found.add(near.contact)
-        if flips.get((near.contact, letter.contact), 0) is None:
-            found.add(near.contact)
+        hit, crossing = (near, letter) if near.kind == HIT else (letter, near)
+        if (hit.kind, crossing.kind) == (HIT, SWITCH):
+            pair = hit.contact, crossing.contact
+            if pair not in flips or (near is hit and flips[pair] is None):
+                found.add(near.contact)
     return frozenset(found)
 
 

@@ -8,9 +8,9 @@ import pytest
 from scipy.optimize import brentq
 
 import contvines as cv
-from orbits import Machine, Switch, Wall
+from orbits import Switch, Wall
 from orbits.symbols import cos
-from tests.orbits.declared.oscillators import FLOOR, oscillator
+from tests.orbits.declared.oscillators import FLOOR, RIGHT, oscillator
 from tools.pages.pages import page
 
 
@@ -47,12 +47,19 @@ def single_impact(frequency, restitution):
     return f, v, 1 + W * later[0] - e * (slope(1, 0, 1) + slope(2, 0, 0) * later[1])
 
 
-def test_single_impact_orbits_and_their_multipliers():
-    machine = page("impact_oscillator")
+def test_single_impact_orbits_their_multipliers_and_what_they_meet():
+    """The impact meets a switch whose force is zero where that has its phase."""
+    machine = oscillator(
+        lambda s, phase, p, contact: cos(phase) - s.x + p.push * contact.half, RIGHT,
+        Switch("half", lambda s, phase, p: cos(phase - p.late)),
+        parameters={"frequency": 2.3, "restitution": 0.8, "gap": 0.0, "push": 0.0, "late": 0.0},
+    )  # fmt: skip
     with mp.workdps(30):
         f, v, trace = single_impact(2.3, 0.8)
-    orbit = machine.attractor(frequency=2.3).orbit
-    assert orbit.word.text == "R" and orbit.real and orbit.stable
+    orbit = machine.attractor().orbit
+    graph = cv.diagram(orbit, over="late", within=(0.0, np.pi), depth=1)
+    assert values(graph, "corner") == pytest.approx([float(f + mp.pi / 2) % np.pi], abs=1e-10)
+    assert len(graph) == 2 and orbit.real
     assert math.cos(orbit.nodes[0, 0] - float(f)) == pytest.approx(1.0, abs=1e-14)
     assert orbit.nodes[0, 2] == pytest.approx(float(v), abs=1e-12)
     assert orbit.multipliers.sum().real == pytest.approx(float(trace), abs=1e-11)
@@ -72,33 +79,25 @@ def test_the_fold_of_a_bounce_with_quadratic_drag():
     """Drag turns with the velocity, which an impact turns at once: it jumps over the surface of the switch.
 
     One bounce a period: up with v0, down with v1, and the table moves with (v0 - e v1)/(1 + e) there, at most A W.
-    Up: v = k tan, over v0 in the time atan(v0/k)/sqrt(g c), to the height ln(1 + (v0/k)^2)/(2 c), k^2 = g/c.
-    Down from there: v1^2 = k^2 (1 - exp(-2 c h)), in the time atanh(v1/k)/sqrt(g c).
+    With g = c the drag is g at the speed 1. Up: v = tan, over v0 in the time atan(v0)/g, to the height ln(1 + v0^2)/(2 g).
+    Down from there: v1^2 = 1 - 1/(1 + v0^2), in the time atanh(v1)/g.
     """
-    gravity, drag, restitution = 0.1, 0.1, 0.8
-    ball = Machine(
-        name="dragged",
-        states=("y", "v"),
+    ball = oscillator(
+        lambda s, phase, p, contact: -0.1 - 0.1 * s.v**2 * contact.up,
+        Wall("B", lambda s, phase, p: s.x - p.amplitude * cos(phase), {"v": 1.0}, 0.8),
+        Switch("up", surface=lambda s, phase, p: s.v),
         parameters={"amplitude": 0.07, "frequency": 1.0},
-        phase_rate="frequency",
-        motion=lambda s, phase, p, contact: (s.v, -gravity - drag * s.v**2 * contact.up),
-        contacts=[
-            Wall("B", lambda s, phase, p: s.y - p.amplitude * cos(phase), {"v": 1.0}, restitution),
-            Switch("up", surface=lambda s, phase, p: s.v),
-        ],
     )
-    k, rate = math.sqrt(gravity / drag), math.sqrt(gravity * drag)
 
     def landing(v0):
-        height = math.log1p((v0 / k) ** 2) / (2 * drag)
-        return k * math.sqrt(-math.expm1(-2 * drag * height))
+        return v0 / math.hypot(1, v0)
 
     def late(v):
-        return (math.atan(v / k) + math.atanh(landing(v) / k)) / rate - 2 * math.pi
+        return (math.atan(v) + math.atanh(landing(v))) / 0.1 - 2 * math.pi
 
     v0 = brentq(late, 0.1, 1.0, xtol=1e-15)
-    exact = (v0 - restitution * landing(v0)) / (1 + restitution)
-    start = ball.attractor({"y": 0.1, "v": 0.33, "phase": -0.8})
+    exact = (v0 - 0.8 * landing(v0)) / 1.8
+    start = ball.attractor({"x": 0.1, "v": 0.33, "phase": -0.8})
     assert start.word.text == "B up-" and start.orbit.real and start.orbit.replay() < 1e-10
     graph = cv.diagram(start, over="amplitude", within=(0.02, 0.09), depth=0)
     assert values(graph, "fold") == pytest.approx([exact], abs=1e-10)
