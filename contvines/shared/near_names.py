@@ -68,7 +68,8 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
             f"{name} ({meaning})" if meaning else name
             for name, meaning in ((name, _meaning(inspect.getdoc(function), name)) for name in absent)
         )
-        raise TypeError(f"{called} needs {needed}")
+        spare = len(arguments) - sum(x.kind <= x.POSITIONAL_OR_KEYWORD for x in parameters.values())
+        raise TypeError(f"{called} needs {needed}" + (f", by name: {absent[0]}=..." if spare > 0 else ""))
 
     return asked
 
