@@ -100,7 +100,7 @@ def work(run: Run) -> None:
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
-            crossed = {switch.point for switch in graph.switches}
+            crossed = {link.point for link in (*graph.switches, *run.queue)}
             for point in graph.special.values():
                 # solutions beyond this border were found, but all were rejected
                 unexplained = point.kind in BORDERS and point.real and not point.remarks

@@ -60,7 +60,7 @@ def test_symmetry_breaks_at_a_border():
 
 
 def test_persistence_is_told_from_a_fold():
-    """The note of each crossing agrees with the sides on which the two branches are."""
+    """The note of each crossing agrees with the sides on which the two branches are; a lone branch is not told to end there."""
     graph = absorber_graph(0.55, (0.17, 1.27), depth=3)
     told = [s for s in graph.switches if "persistence" in s.note or "nonsmooth fold" in s.note]
     for switch in told:
@@ -71,6 +71,10 @@ def test_persistence_is_told_from_a_fold():
             above.append(branch.values[[1, -2]][end] > value)
         assert (above[0] != above[1]) == ("persistence" in switch.note), switch
     assert len(told) >= 6
+    lone = cv.diagram(
+        graph["B3"].orbit(5), over="amplitude", within=(0.17, 1.27), settings={"max_branches": 1}
+    )
+    assert lone["VG1"].value == pytest.approx(graph["VG1"].value) and not lone["VG1"].remarks
 
 
 def test_without_friction_flights_graze_the_walls():
