@@ -96,8 +96,9 @@ def _rounds_at(border: Border, edit: Edit, unchanged: list[tuple[np.ndarray, flo
         if len(climbed) < 2:
             return None
         far, near = (abs(held.p - border.p) for held in climbed)
-        # a tenth of the size gives at most a tenth of the distance, up to higher orders
-        if not near <= max(0.5 * far, BORDERING.placed * parameter_unit(border.problem, border.p)):
+        # a tenth of the size gives at most a tenth of the distance, up to higher orders; twice as much is another branch
+        share = 2.0 * climbed[1].size / climbed[0].size
+        if not near <= max(share * far, BORDERING.placed * parameter_unit(border.problem, border.p)):
             return None
         solutions = [(held.u, held.p) for held in climbed]
     kinds = [unchanged, [_derivative(other, u, p) for u, p in solutions]]
