@@ -55,7 +55,6 @@ def test_without_friction_a_motion_starts_over_friction():
     machine = Absorber(restitution=0.9, friction=0.0, gravity=0.27, mass_ratio=0.05)
     graph = cv.diagram(machine.attractor(amplitude=0.9), over="friction", within=(0.0, 0.07), depth=1)
     settled = machine.changed(friction=0.05).attractor(amplitude=0.9)
-    assert graph["B2"].range[1] == 0.07
     assert graph["B2"].description["word"] == settled.word.text
 
 
