@@ -366,11 +366,10 @@ def _sentence(model: type[Section], loc: list[int | str], error: ErrorDetails) -
         if kind == "missing":
             return f"the section [{section}] is missing; it holds {SECTIONS[section]}."
         if kind == "extra_forbidden":
-            names = ", ".join(f"[{name}]" for name in sections)
+            known = ("model", *sections, "conditions")
+            names = ", ".join(f"[{name}]" for name in known)
             written = f"[{section}]" if isinstance(given, dict) else f"{section} = {value}"
-            return (
-                f"{written}: there is no such section{did_you_mean(section, sections)}; a study has {names}."
-            )
+            return f"{written}: there is no such section{did_you_mean(section, known)}; a study has {names}."
         return (
             f"{section} = {value} is not a section; write [{section}] on a line of its own, its keys below."
         )
