@@ -27,6 +27,7 @@ from .chart import Chart
 from .codimension_two import mark
 from .departures import leaving
 from .kernels import BRANCH, FOLD, MARGIN, OWN, PERIOD, condition
+from .linear import Linearisation
 from .locus import Locus, PlanePoint
 from .problem import LocusProblem
 from .regions import KnownMotions, divide, together
@@ -74,6 +75,14 @@ class ChartProgress(NamedTuple):
             f"{self.message}  |  {self.done} of {self.known} starts of loci known so far{time_left(self.seconds)}; "
             f"{self.loci} {'locus' if self.loci == 1 else 'loci'}, {self.points} points"
         )
+
+
+def has_pair(problem: LocusProblem, U: np.ndarray, q: float, candidate: Candidate) -> bool:
+    """Whether a locus, at a point next to a candidate with two critical pairs, has the candidate's pair."""
+    u, p = problem.split(U)
+    one = Linearisation(problem.at(q)).at(u, float(p)).positions()[:1]
+    two = Linearisation(candidate.problem).at(candidate.u, candidate.p).positions()[:2]
+    return min(len(one), len(two) - 1) < 1 or int(np.argmin(np.abs(two - one))) == candidate.pair
 
 
 class Charting:
@@ -253,7 +262,10 @@ class Charting:
             if np.abs(([p, q] - place) / unit).max() > (PLACES.end if found is None else PLACES.same):
                 continue
             if border or same_form(problem.base.canonical(u, float(p)), form, engine.scale):
-                return True
+                end = i + int(np.argmax(np.abs((values[i : i + 2] - place) / unit).max(axis=1)))
+                return candidate.pair is None or has_pair(
+                    problem, locus.branch.points[end], float(values[end, 1]), candidate
+                )
         return False
 
     # ------------------------------------------------------------------ points

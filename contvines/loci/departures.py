@@ -55,6 +55,10 @@ PASSING = {
     "border-symmetry-breaking": ("symmetry-breaking",),
     "border-neimark-sacker": ("neimark-sacker",),
 }
+TWO_PAIRS = (
+    "double-hopf",
+    "double-neimark-sacker",
+)  # a locus of each of the two pairs passes through the point
 #: kind of a point -> kind of the locus of cycles of twice the period that begins there; the second table holds for cycles of flows only
 DOUBLED = {"generalized-period-doubling": "fold"}
 DOUBLED_CYCLES = {"resonance-1-2": "neimark-sacker", "fold-flip": "neimark-sacker"}
@@ -87,7 +91,8 @@ def leaving(point: PlanePoint, locus: Locus, bounds: Interval, over: str) -> Ite
         if kind == "neimark-sacker" and problem.spectrum != "map":
             continue
         if not crossing:
-            yield Candidate(problem, kind, u, p, q, point.label)
+            for pair in (0, 1) if point.kind in TWO_PAIRS else (None,):
+                yield Candidate(problem, kind, u, p, q, point.label, pair=pair)
         elif kind != "fold":  # start next to the crossing, where the equations are regular
             for shift in (-START_SHIFT, START_SHIFT):
                 yield Candidate(problem, kind, u, p + shift * (bounds[1] - bounds[0]), q, point.label)

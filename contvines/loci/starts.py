@@ -37,7 +37,11 @@ Cycle = tuple[CycleProblem, np.ndarray, float]
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A special point at (p, q) from which a locus may be traced; ``index`` is the margin's index at a border, ``seed`` the label of the point of origin."""
+    """A special point at (p, q) from which a locus may be traced.
+
+    ``index`` is the margin's index at a border, ``seed`` the label of the point of origin, ``pair`` the index of the locus's complex pair among
+    the most critical ones where two pairs are critical.
+    """
 
     problem: Problem
     kind: str
@@ -47,6 +51,7 @@ class Candidate:
     seed: str
     index: int = 0
     own_kind: Kind | None = None
+    pair: int | None = None
 
 
 def check_start(point: SpecialPoint, over: str, within: tuple[float, float]) -> None:
@@ -132,7 +137,8 @@ def begin(start: Candidate, over: str, bounds: tuple[float, float] = (-np.inf, n
         locus.masked = tuple(np.flatnonzero(np.abs(margins) < VANISHING.margin).tolist()) or (index,)
     if wanted == PAIR:
         line = Linearisation(problem).at(u, p)
-        locus.reference = line.pair(next(iter(line.positions()), 0.0))[1]
+        pairs = line.positions()[start.pair or 0 :]
+        locus.reference = line.pair(next(iter(pairs), 0.0))[1]
     return locus
 
 

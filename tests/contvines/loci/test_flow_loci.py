@@ -302,3 +302,16 @@ def test_neimark_sacker_points_of_cycles_begin_at_equilibria(f, states, sign, ex
     assert np.abs(p - exact * q).max() < 1e-9
     found = {point.kind: point.value for point in locus.points.values()}
     assert found == {kind: pytest.approx((0.0, a), abs=1e-8) for kind, a in places.items()}
+
+
+@pytest.mark.slow
+def test_four_loci_meet_at_a_double_hopf_point():
+    """Hopf points at a = 0 and b = 0, Neimark-Sacker points at b = 3/2 a > 0 and a = b / 2 > 0."""
+    flow = cv.FlowProblem(double_hopf, [0.0] * 4, {"b": -0.1, "a": 0.09}, scale=1.0)
+    graph = cv.diagram(flow, over="b", within=(-0.2, 0.2), depth=0)
+    chart = cv.chart(graph, over="a", within=(-0.1, 0.2), regions=False)
+    lines = {label: np.abs(locus.values).max(axis=0) for label, locus in chart.loci.items()}
+    assert sorted((label[:2], *place) for label, place in lines.items()) == [
+        ("HB", pytest.approx(0.0, abs=1e-9), pytest.approx(0.2)), ("HB", pytest.approx(0.2), pytest.approx(0.0, abs=1e-9)),
+        ("NS", pytest.approx(0.2), pytest.approx(0.1)), ("NS", pytest.approx(0.2), pytest.approx(0.2 / 1.5)),
+    ]  # fmt: skip
