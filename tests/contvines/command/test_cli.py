@@ -138,6 +138,7 @@ REQUESTS = {
     "rerun g.vines": "keeps no study to run again, as it was saved from Python (graph.save): the script that made it",
     "report g.vines -o a.png": "must end in .html",
     "report g.vines -o none/a.html": "there is no folder",
+    "export d.csv --to xml": "there is no such choice; choose one of csv, json, graphml, mat",
     "new foo": "contvines: foo: there is no such choice; choose one of absorber, coupled, cavity, si, machine, flow.",
     "new flow": "flow.py: this file is there already",
     "prove g.vines XX": "no label",

@@ -125,17 +125,6 @@ def test_latex_has_a_row_per_branch_and_point(graph, written, tmp_path):
     assert written(graph, "latex") == text  # a file that ends as its format is called is written again
 
 
-def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
-    with pytest.raises(
-        ValueError, match="--to xml: there is no such format; choose one of csv, json, graphml, mat"
-    ):
-        export(graph, "xml", tmp_path / "g.xml")
-    with pytest.raises(ValueError, match="there is no folder"):
-        export(graph, "csv", tmp_path / "none" / "g.csv")
-    with pytest.raises(ValueError, match="cannot be written"):
-        export(graph, "json", tmp_path)
-
-
 def test_exports_of_a_file_carry_its_study_and_with_what_it_was_made(written, tmp_path):
     source = {"command": "atlas", "study": "a.toml", "text": "[atlas]\nseed = 7\n"}
     study = {"atlas": {"seed": 7}, "source": source}

@@ -1,12 +1,9 @@
 """Branches whose cycles ask for more intervals on the way: what has been found stays, and goes on on the finer mesh."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.flows import mesh
 from contvines.graph.persistence import same_graph
 from tests.contvines.flows.shooting import cycle, nerve, neuron, prey_and_predator, van_der_pol
 
@@ -79,25 +76,6 @@ def test_both_sides_of_a_start_come_to_the_same_mesh():
     assert periods[high] == pytest.approx((3 - 2 * np.log(2)) * 100 + 7.014 / 100 ** (1 / 3), rel=2e-3)
     assert abs(branch.orbit(low).period_error) < 1e-6
     assert branch.orbit(high).replay() < 1e-4
-
-
-@pytest.mark.parametrize("count", [5, 12])
-def test_a_mesh_with_equal_halves_is_as_dense_as_both_halves_before(count):
-    """An interval of the new mesh has as much of the two halves' intervals, counted by hand, as one of the old."""
-    widths = np.random.default_rng(count).uniform(0.1, 1.0, count)
-    widths /= widths.sum()
-    new = mesh.with_equal_halves(widths)
-    assert len(new) == 2 * count and new.min() > 0.0 and new.sum() == pytest.approx(1.0)
-    assert new[:count] == pytest.approx(new[count:], rel=1e-12)
-    own, ends = np.append(0.0, np.cumsum(widths)), np.append(0.0, np.cumsum(new[:count]))
-    for low, high in pairwise(ends):
-        shares = [
-            max(min(b, high + late) - max(a, low + late), 0.0) / (b - a)
-            for late in (0.0, 0.5)
-            for a, b in pairwise(own)
-        ]
-        assert sum(shares) == pytest.approx(1.0)
-    assert mesh.with_equal_halves(np.full(count, 1 / count)) == pytest.approx(np.full(2 * count, 0.5 / count))
 
 
 @pytest.mark.slow
