@@ -27,13 +27,13 @@ struct Place {
     double size, x, y;
     Link ahead, back;
 };
-// A chunk, and what is found: one array after the other from `lengths` on. `near` is the least distance of a
-// real multiplier from 1 (from 0); products, (2, count), are those of all distances from 1, and from -1, with signs.
+// A chunk, and what is found: one array after the other from `lengths` on. Of the distances from 1 and from -1 (from 0) gaps, (4, count), are the
+// nearest ones, then the products.
 struct Scanned : Scanner {
     whole count;
     double flat;  // slopes up to this are rounding
     const double *points, *values, *tangents, *rows, *determinants;
-    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *products = near + count, *past = products + 2 * count, *reached = past + 3 * count,
+    double *lengths, *smallest = lengths + count - 1, *gaps = smallest + count, *past = gaps + 4 * count, *reached = past + 3 * count,
            *low = reached + count - 1, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
     Place* places = (Place*)(turns + symmetries * (count - 1));  // (count, multipliers)
 };
@@ -51,9 +51,9 @@ template <class Term> inline double sum(whole n, Term term) {
     return joined(n, 0.0, [](double a, double b) { return a + b; }, term);
 }
 
-// How many of each sort (near 1, near -1, pairs) are past the circle, how far the first are, and the products.
+// How many of each sort (near 1, near -1, pairs) are past the circle, and how far all are from 1 and from -1.
 inline void multipliers_of(const Scanned& s, const double* row, whole i) {
-    double near = HUGE_VAL, past[3] = {}, products[2] = {1.0, 1.0};
+    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {}, products[2] = {1.0, 1.0};
     Place* place = s.places + i * s.multipliers;
     for (whole k = 0; k < s.multipliers && s.kind != NONE; k++) {
         const double re = row[2 * k], im = row[2 * k + 1];
@@ -61,20 +61,22 @@ inline void multipliers_of(const Scanned& s, const double* row, whole i) {
         const int sort = s.kind == REAL ? 0 : !real ? 2 : map && !(re > 0.0) ? 1 : 0;
         const double by_size = 1.0 / (1.0 + (real ? fabs(re) : hypotenuse(re, im)));
         for (int side = 0; side < (map ? 2 : 1); side++) {
-            const double along = map ? re - 1.0 + 2.0 * side : re, part = (real ? along : hypotenuse(along, im)) * by_size;
-            products[side] *= fabs(part) > PAST ? part : 1.0;
+            const double along = map ? re - 1.0 + 2.0 * side : re, part = (real ? fabs(along) : hypotenuse(along, im)) * by_size;
+            products[side] *= part > PAST ? part : 1.0;
         }
         place[k] = {NAN, NAN, NAN, {HUGE_VAL, 0.0, 0, k}, {HUGE_VAL, 0.0, 0, k}};
         if (s.kind != REAL && !real && !(im > 0.0)) continue;
         const double modulus = real ? fabs(re) : hypotenuse(re, im), size = map ? logarithm(modulus) : re;
         past[sort] += size > PAST;
-        if (sort == 0 && fabs(size) < near) near = fabs(size);
+        if (fabs(size) < near[sort]) near[sort] = fabs(size);
         const double x = map ? re / modulus : 0.0, y = map ? im / modulus : im;
         if (isfinite(size) && isfinite(x) && isfinite(y)) place[k].size = size, place[k].x = x, place[k].y = y;
     }
     for (int sort = 0; sort < 3; sort++) s.past[sort * s.count + i] = past[sort];
-    for (int side = 0; side < 2; side++) s.products[side * s.count + i] = products[side];
-    s.near[i] = near > PAST && near < HUGE_VAL ? near : NAN;
+    for (int side = 0; side < 2; side++) {
+        s.gaps[side * s.count + i] = near[side] > PAST && near[side] < HUGE_VAL ? near[side] : NAN;
+        s.gaps[(2 + side) * s.count + i] = products[side];
+    }
 }
 
 // The nearest multiplier at the next point of each one of point i - 1, and at the point before of each one of point i.
@@ -90,13 +92,16 @@ inline void join(const Scanned& s, whole i) {
             if (gap < here[k].back.gap) here[k].back = {gap, fabs(along), born, j};
         }
 }
-// Whether a real multiplier may have crossed the line on segment i and returned; see `_dips` in the reference.
+// Whether the parabola of the product of all distances from 1, or from -1, or of the nearest, through point i and the two beside it passes zero.
 inline bool dips(const Scanned& s, whole i) {
-    for (int side = 0; side < 2; side++) {
-        const double *product = s.products + side * s.count, one = product[i], other = product[i + 1], sign = one > 0.0 ? 1.0 : -1.0;
-        const auto on = [&](whole k) { return sign * (product[k + 1] - product[k]) / s.lengths[k] * s.lengths[i]; };
-        const bool ahead = i > 0 && -on(i - 1) > fabs(one), back = i + 2 < s.count && on(i + 1) > fabs(other);
-        if (sign * other > 0.0 && (ahead || back)) return true;
+    if (i == 0 || i + 1 == s.count) return false;
+    const double h1 = s.lengths[i - 1], h2 = s.lengths[i];
+    for (int side = 0; side < 4; side++) {
+        const double *gap = s.gaps + side * s.count + i, *past = s.past + side % 2 * s.count + i;
+        if (past[-1] != past[0] || past[1] != past[0]) continue;
+        const double before = (gap[0] - gap[-1]) / h1, after = (gap[1] - gap[0]) / h2;
+        const double bend = (after - before) / (h1 + h2), slope = (before * h2 + after * h1) / (h1 + h2);
+        if (bend > 0.0 && -2.0 * bend * h1 < -slope && -slope < 2.0 * bend * h2 && 4.0 * bend * gap[0] < slope * slope) return true;
     }
     return false;
 }
@@ -151,7 +156,7 @@ inline bool open_at(const Scanned& s, whole i) {
         if (s.past[sort * s.count + i] != s.past[sort * s.count + i - 1]) return true;
     if (i < 2) return false;
     const double part = fall(s.lengths[i - 2], length), slopes[] = {slope[-2 * n - 2], here, there};
-    return may_fall(slopes + 2, part) || may_fall(s.near + i, STRAIGHT * part);
+    return may_fall(slopes + 2, part) || may_fall(s.gaps + i, STRAIGHT * part);
 }
 
 // Returns whether nothing is open.
@@ -191,7 +196,7 @@ inline bool scan(const Scanned& s) {
         }
     }
     for (whole i = 0; i + 1 < s.count; i++) {
-        s.reached[i] = dips(s, i) || ((s.kind == MAP || s.kind == FLOW) && reaches(s, i)) ? 1.0 : 0.0;
+        s.reached[i] = dips(s, i) || dips(s, i + 1) || ((s.kind == MAP || s.kind == FLOW) && reaches(s, i)) ? 1.0 : 0.0;
         quiet &= s.reached[i] == 0.0;
     }
     return quiet && sum(width, [&](whole j) { return s.low[j]; }) == 0.0;

@@ -47,7 +47,7 @@ class Detector(SegmentSearch):
         ----------
         chunk : Chunk
         scanned : Scan
-            Scan of the chunk with its neighbours.
+            Scan of the chunk.
         real : bool
             Whether the branch has positive margins; on a virtual branch the return to positive margins is the border.
 
@@ -59,7 +59,10 @@ class Detector(SegmentSearch):
         if len(chunk) < 2:
             return []
         engine, many = self.engine, self.engine.many
-        wide, extra = chunk.beside or chunk, chunk.skipped
+        wide = chunk.widened() if len(chunk) == 2 else chunk  # two points are too few for a parabola
+        extra = len(wide) - len(chunk)
+        if extra:
+            scanned = self.scan(wide)
         meetings, landings = self._meetings_and_landings(wide, scanned)
         if scanned.quiet and not (self.own or meetings.any() or landings.any()):
             return []
@@ -77,11 +80,10 @@ class Detector(SegmentSearch):
         may_reach = (scanned.reached > 0.0) & (not many) & ~meetings
         sharp = kinks(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meetings
         searched = differs | sharp | may_reach | inside.any(axis=1)
-        own = slice(extra, extra + len(chunk) - 1)
-        movable = landings[own] if chunk.status == Status.RUNNING else landings[own][:-1]
+        movable = landings[extra:] if chunk.status == Status.RUNNING else landings[extra:-1]
         landed = int(movable.argmax()) if movable.any() else None
         events: list[Located] = []
-        for i in np.flatnonzero(searched[own][:landed]).tolist():
+        for i in np.flatnonzero(searched[extra:][:landed]).tolist():
             k = i + extra
             one, other = (chunk.solved(i + j, float(sides[k + j, 1])) for j in (0, 1))
             segment = Segment(engine, one, other)

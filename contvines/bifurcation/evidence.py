@@ -3,7 +3,7 @@
 * `sides` are signs and counts. If one of them differs at the two ends of a segment, a special point lies between.
 * `distances` are values of test functions. One of them may reach zero inside a segment and return, with equal signs at both ends: a dip. The
   parabola through three neighbouring points shows whether a dip is possible; points inside the segment then decide. For multipliers
-  :func:`contvines.bifurcation.scan.reached` does this, by their rates.
+  :func:`contvines.bifurcation.scan.reached` does this.
 """
 
 from __future__ import annotations

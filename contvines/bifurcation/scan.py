@@ -86,9 +86,13 @@ def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
     """Return the summary of the multipliers of n rows."""
     with np.errstate(all="ignore"):
         sizes = sizes_by_sort(engine, rows)
-        near = np.fmin.reduce(np.abs(sizes[0]), axis=1, initial=np.inf)
-        known = (near > LOCATING.past) & (near < np.inf)
-        return Spectra(np.where(known, near, np.nan), (sizes > LOCATING.past).sum(axis=2))
+        return Spectra(_nearest_of(sizes)[0], (sizes > LOCATING.past).sum(axis=2))
+
+
+def _nearest_of(sizes: np.ndarray) -> np.ndarray:
+    """Return the smallest absolute sizes along the last axis; NaN without finite ones, or if the smallest is rounding."""
+    near = np.fmin.reduce(np.abs(sizes), axis=-1, initial=np.inf)
+    return np.where((near > LOCATING.past) & (near < np.inf), near, np.nan)
 
 
 def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
@@ -108,26 +112,34 @@ def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray
 
 
 def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Find the segments on which a real multiplier may have crossed the line and returned.
+    """Find the segments on which, by parabolas through three neighbouring points, a real multiplier may cross the line and return.
 
-    Test functions are the product of all (m - 1) / (1 + |m|), and of all (m + 1) / (1 + |m|) (of eigenvalues m / (1 + |m|)), with |m - 1| for complex
-    ones: smooth where two multipliers exchange ranks or become a pair, and hardly influenced by those far away. Multipliers on the line to rounding are
-    left out. A product of one sign at both ends may have reached zero if a straight line through one of them and its other neighbour reaches zero
-    within the segment.
+    Two functions are tested:
+
+    * the product of all |m - 1| / (1 + |m|), and of all |m + 1| / (1 + |m|) (of eigenvalues |m| / (1 + |m|)): smooth where two multipliers
+      exchange ranks or become a pair, and hardly influenced by those far away;
+    * the distance of the nearest real multiplier, as two that cross together leave the product positive.
+
+    Multipliers on the line to rounding are left out.
     """
-    if engine.detection == "none" or not engine.m:
-        return np.zeros(len(lengths), dtype=bool)
+    found = np.zeros(len(lengths), dtype=bool)
+    if engine.detection == "none" or not engine.m or len(lengths) < 2:
+        return found
     re, im = rows[:, : 2 * engine.m : 2], rows[:, 1 : 2 * engine.m : 2]
     places = (1.0, -1.0) if engine.detection == "map" else (0.0,)
     with np.errstate(all="ignore"):
-        gaps = np.array([np.where(im == 0.0, re - place, np.hypot(re - place, im)) for place in places])
-        parts = gaps / (1.0 + np.hypot(re, im))
-        products = np.where(np.abs(parts) > LOCATING.past, parts, 1.0).prod(axis=2)
-        rates = np.pad(np.diff(products) / lengths, ((0, 0), (1, 1)), constant_values=np.nan)
-        side, sizes = np.sign(products[:, :-1]), np.abs(products)
-        ahead = -rates[:, :-2] * side * lengths > sizes[:, :-1]
-        back = rates[:, 2:] * side * lengths > sizes[:, 1:]
-    return ((side * products[:, 1:] > 0.0) & (ahead | back)).any(axis=0)
+        sizes = sizes_by_sort(engine, rows)[: len(places)]
+        parts = np.array([np.hypot(re - place, im) for place in places]) / (1.0 + np.hypot(re, im))
+        products = np.log(np.where(parts > LOCATING.past, parts, 1.0)).sum(axis=2)
+        logs = np.concatenate([products, np.log(_nearest_of(sizes))])
+        past = np.tile((sizes > LOCATING.past).sum(axis=2), (2, 1))
+        left, right = np.exp(logs[:, :-2] - logs[:, 1:-1]), np.exp(logs[:, 2:] - logs[:, 1:-1])
+        one_side = (past[:, :-2] == past[:, 1:-1]) & (past[:, 2:] == past[:, 1:-1])
+        dips = parabola_dips(left, np.ones_like(left), right, lengths[:-1], lengths[1:])
+    dips = (dips & one_side).any(axis=0)
+    found[:-1] |= dips
+    found[1:] |= dips
+    return found
 
 
 def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
@@ -242,12 +254,12 @@ class NativeScan:
         """Scan a chunk."""
         n, k, w = len(chunk), self.symmetries, self.margins
         places = 11 * n * self.engine.m  # work space for multipliers
-        found = np.empty(9 * n - 2 + w + k * (2 * n - 1) + places)
+        found = np.empty(10 * n - 2 + w + k * (2 * n - 1) + places)
         quiet = _native()(
             address(self.frame), n, self.engine.upright(float(chunk.values[0])), place(chunk.points), place(chunk.values),
             place(chunk.tangents), place(chunk.rows), place(chunk.signs), address(found),
         )  # fmt: skip
-        near, past, low = 2 * n - 1, 5 * n - 1, 9 * n - 2
+        near, past, low = 2 * n - 1, 6 * n - 1, 10 * n - 2
         sizes, turns = low + w, low + w + k * n
         return Scan(
             found[: n - 1],

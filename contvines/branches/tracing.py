@@ -58,7 +58,7 @@ def trace_half(
     start : Solved
         First point.
     journal, key
-        Chunks and their events are recalled from, and recorded in, the journal as ``key/number`` and ``key/number/special``.
+        Chunks and their events are recalled from, and recorded in, the journal as ``key/number`` and ``key/number/events``.
     real : bool
         Whether the branch has positive margins.
     first_step : float, optional
@@ -82,7 +82,7 @@ def trace_half(
     request: Retrace | Finer | None = None
     for number in count_from(0):
         chunk = next(walk) if request is None else walk.send(request)
-        name = f"{key}/{number}/special"
+        name = f"{key}/{number}/events"
         coarse, lag = _coarse(engine, chunk)
         if coarse:
             whole = _ended(half, chunk)
@@ -96,7 +96,7 @@ def trace_half(
             request = Finer(engine, image)
             continue
         chunk = chunk if lag is None else chunk.cut(lag.count)
-        recorded, scanned = journal.recall(name), detector.scan(chunk.beside or chunk)
+        recorded, scanned = journal.recall(name), detector.scan(chunk)
         if recorded is None:
             events = detector.look(chunk, scanned, real)
             if len(chunk) > 1:
@@ -124,8 +124,7 @@ def trace_half(
             half.put(len(half) - 1, chunk.solved(0))
         # copied, as the loop reuses the array of rows
         spectrum = chunk.rows[:, : 2 * engine.m].copy()
-        smallest = scanned.smallest[chunk.skipped :][: len(chunk)]
-        whole = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, smallest)
+        whole = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, scanned.smallest)
         begin, total = 1, len(half)  # the first point is the last one of the chunk before
         for event in events:
             end = max(int(event.position) + 1, begin)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -244,10 +244,8 @@ class Chunk:
         Of shapes (M, N), (M,), (M, N + 1), (M, row), (M,), (M,) for M points; see `Solved`.
     status : Status
         RUNNING, or the reason why the branch ends with the last point.
-    beside : Chunk or None
-        The same points with up to one neighbour before and one behind them; these show whether something is possible on the first and the last segment.
-    skipped : int
-        Number of points of `beside` before the first one of the chunk.
+    before : Solved or None
+        The point before the first one, if there is one.
     """
 
     points: np.ndarray
@@ -257,8 +255,7 @@ class Chunk:
     signs: np.ndarray
     corrections: np.ndarray
     status: Status
-    beside: Chunk | None = None
-    skipped: int = 0
+    before: Solved | None = None
 
     def __len__(self) -> int:
         return len(self.values)
@@ -268,18 +265,17 @@ class Chunk:
         """The arrays in the order of the attributes."""
         return self.points, self.values, self.tangents, self.rows, self.signs, self.corrections
 
-    def part(self, first: int, end: int | None = None) -> Chunk:
-        """Return points first, first + 1, ... end - 1 as a chunk, without neighbours."""
-        return Chunk(*(array[first:end] for array in self.arrays), status=self.status)
-
     def cut(self, n: int) -> Chunk:
-        """Return the chunk of the first n points, which keep the neighbour before them."""
-        beside = None if self.beside is None else self.beside.part(0, self.skipped + n)
-        return replace(self.part(0, n), beside=beside, skipped=self.skipped)
+        """Return the chunk of the first n points."""
+        return Chunk(*(array[:n] for array in self.arrays), status=self.status, before=self.before)
 
     def joined(self, other: Chunk) -> Chunk:
         """Return the chunk of these points followed by those of another chunk, with its status."""
         return Chunk(*map(np.concatenate, zip(self.arrays, other.arrays, strict=True)), status=other.status)
+
+    def widened(self) -> Chunk:
+        """Return the chunk with the point before its first one, if there is one."""
+        return self if self.before is None else packed([self.before], self.status).joined(self)
 
     def solved(self, i: int, sign: float | None = None) -> Solved:
         """Return point i, with another sign of the determinant if given."""

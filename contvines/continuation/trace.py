@@ -76,8 +76,7 @@ def chunks(
     ------
     Chunk
         The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
-        chunks share their memory: copy those that are needed before the next chunk. The point behind the last one is known already
-        (:attr:`Chunk.beside`), unless the branch ends or the mesh may be adapted there.
+        chunks share their memory: copy those that are needed before the next chunk.
     """
     settings, bound = engine.settings, engine.upper if start.tangent[-1] > 0.0 else engine.lower
     left = (bound - start.p) * np.sign(start.tangent[-1])
@@ -94,7 +93,6 @@ def chunks(
         closing, reach = Closing(engine, start), Reach(engine, start)
         request: Retrace | Finer | None = None
         total, number, standing = 1, 0, False
-        held = 0  # 1 if the last point of the history was not yet yielded
         while True:
             name, before = f"{key}/{number}", (h, copy(closing), copy(reach))
             most = min(8 * settings.chunk, LARGEST // (2 * engine.n + engine.row_size))
@@ -106,9 +104,6 @@ def chunks(
                     *(np.asarray(recorded[part]) for part in OF_SOLVED),
                     status=Status(int(recorded["status"])),
                 )
-                if not np.array_equal(history[-1].u, chunk.points[0]):
-                    history = [chunk.solved(0)]  # the mesh was adapted
-                whole = _behind(history, chunk)
                 h, standing = float(recorded["h"]), bool(recorded.get("still", False))
                 reach.escapes(chunk)
             else:
@@ -124,8 +119,7 @@ def chunks(
                 room = min(room, max(settings.max_points - total, 1))
                 spacing = _largest_spacing(engine, max(h, longest))
                 loop = motion.standing_loop if standing else engine.loop
-                whole, h = _march(engine, loop, history, room, h, longest, stop_at_border)
-                chunk = whole.part(len(history) - 1)
+                chunk, h = _march(engine, loop, history, room, h, longest, stop_at_border)
                 stuck = chunk.status == Status.STEP_TOO_SMALL and engine.moving is not None and not standing
                 standing = stuck
                 if stuck:
@@ -136,15 +130,14 @@ def chunks(
                     else:
                         history, standing = motion.adapted(history[-1:], standing), False
                         loop = motion.standing_loop
-                        whole, h = _march(engine, loop, history, room, h, longest, stop_at_border)
-                        chunk = whole.part(len(history) - 1)
+                        chunk, h = _march(engine, loop, history, room, h, longest, stop_at_border)
                 closed = closing.cut(chunk, spacing)
                 away = reach.escapes(chunk, spacing)
                 if closed is not None:
-                    chunk, whole = closed, _behind(history, closed)
+                    chunk = closed
                 elif away is not None:
-                    chunk = chunk.part(0, max(away + 1, 2))
-                    chunk.status, whole = Status.ESCAPED, whole.part(0, len(history) - 1 + len(chunk))
+                    chunk = chunk.cut(max(away + 1, 2))
+                    chunk.status = Status.ESCAPED
                 elif reach.creeps(chunk):
                     chunk.status = Status.CREEPING
                 elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
@@ -154,12 +147,8 @@ def chunks(
                     journal.record(
                         name, {**_stored(chunk), "status": int(chunk.status), "h": h, "still": standing}
                     )
-            skipped = len(history) - 1 - held
-            held = int(chunk.status == Status.RUNNING and engine.adaptive is None)
-            end = len(whole) - held
-            shown = whole.part(skipped, end)
-            shown.status, shown.beside, shown.skipped = chunk.status, whole, skipped
-            request = yield shown
+            chunk.before = history[-2] if len(history) > 1 else None
+            request = yield chunk
             number += 1
             if isinstance(request, Finer):
                 motion.release()
@@ -170,13 +159,12 @@ def chunks(
                 for watch in (closing, reach):
                     watch.engine, watch.start = engine, start
                 continue
-            total += len(chunk) - 1
             if request is not None:
-                held, end = 0, skipped + request.count
-                total -= len(whole) - end
+                chunk = chunk.cut(request.count)
             elif chunk.status != Status.RUNNING:
                 return
-            history = [whole.solved(i) for i in range(max(0, end - 2), end + held)]
+            total += len(chunk) - 1
+            history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
             history = motion.adapted(history, standing)
             capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
     finally:
@@ -201,7 +189,7 @@ def _march(
     longest: float,
     stop_at_border: bool,
 ) -> tuple[Chunk, float]:
-    """March from the last points of a branch; return these and the new ones as a chunk, and the next step."""
+    """March from the last points of a branch; return a chunk, and the next step."""
     first, n = len(history), engine.n
     size = first + capacity
     signs, corrections = np.zeros((2, size))
@@ -212,13 +200,7 @@ def _march(
     control = engine.control._replace(stop_at_border=stop_at_border, max_step=longest)
     with engine.section:
         filled, h, status = loop.march(chunk, first, float(h), control)
-    chunk.status = Status(status)
-    return chunk.part(0, filled), float(h)
-
-
-def _behind(history: list[Solved], chunk: Chunk) -> Chunk:
-    """Return the last points of a branch and the following ones of a chunk that begins with the last one."""
-    return packed(history, chunk.status).joined(chunk.part(1))
+    return Chunk(*(array[first - 1 : filled] for array in chunk.arrays), status=Status(status)), float(h)
 
 
 def _largest_spacing(engine: Engine, longest: float) -> float:

@@ -61,7 +61,7 @@ def test_native_and_numpy_agree(data):
     assert all(test.affine is not None for test in symmetries)
     drawn = chunk(
         data.draw(arrays(float, (count, n), elements=st.floats(-20.0, 20.0))),
-        np.linspace(-2.0, 2.0, count),
+        data.draw(arrays(float, count, elements=st.floats(-2.0, 2.0))),
         data.draw(arrays(float, (count, 2 * m + w), elements=NUMBERS)),
     )
     scans = partial(with_arrays, engine, symmetries), NativeScan(engine, symmetries)
@@ -71,7 +71,5 @@ def test_native_and_numpy_agree(data):
         np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
     # ways as long as they have to be: at equal numbers the last bit would decide
     drawn.rows *= 1.0 + 1e-3 * np.sin(1.0 + np.arange(drawn.rows.size).reshape(drawn.rows.shape))
-    for _ in range(2):
-        one, other = (scan(drawn).reached for scan in scans)
-        np.testing.assert_array_equal(one, other)
-        drawn.rows[:, 1 : 2 * m : 2] = 0.0
+    one, other = (scan(drawn).reached for scan in scans)
+    np.testing.assert_array_equal(one, other)
