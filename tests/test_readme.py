@@ -91,7 +91,7 @@ def test_study_block_is_a_good_study():
     from contvines.command.study import check_study
 
     text = re.search(r"```toml\n(.+?)```", README, re.DOTALL)
-    assert text and check_study(tomllib.loads(text[1])).word == "LR"
+    assert text and check_study(tomllib.loads(text[1])).start.word == "LR"
 
 
 def test_authors_and_version_are_those_of_the_citation():

@@ -144,8 +144,7 @@ class CycleProblem(CycleRelatives):
         - Newton's method fails next to it (`stuck`), as at canards on a coarse mesh;
         - it approaches a cycle of half the period, or its own mirror image: this needs a mesh with equal halves;
         - its error is too large even on an adapted mesh;
-        - collocation loses a decay, see `_lost_decay`;
-        - a finer mesh has the cycle elsewhere, see `moved`.
+        - collocation loses a decay, see `_lost_decay`.
         """
         if stuck:
             return self.intervals < ENOUGH * self.copies
@@ -154,7 +153,7 @@ class CycleProblem(CycleRelatives):
             return True
         if self.intervals >= MOST or self.rests(u):
             return False
-        return self._in_error(u) or self._lost_decay(u, p) or self.moved(u, p) > self.flow.error
+        return self._in_error(u) or self._lost_decay(u, p)
 
     def _in_error(self, u: np.ndarray) -> bool:
         image = self.adapted(u) if self.lags(u) else None

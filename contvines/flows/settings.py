@@ -52,7 +52,7 @@ class FlowSettings:
     touch : float
         Ends: step of differences at an event, in sizes of the cycle.
     error : float
-        Errors: largest error of a cycle between its mesh points, relative to its size, and largest relative change of its period on a finer mesh.
+        Errors: largest error of a cycle between its mesh points, relative to its size.
     sensible : float
         Errors: largest error of the trivial multiplier at which it is used as an estimate for the other multipliers.
     solved, rounded, diverged : float

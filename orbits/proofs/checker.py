@@ -167,19 +167,19 @@ def changed(c, tile, beside):
 def verify(c):
     """Verify the certificate of an orbit, a special point or a stretch."""
     need({*c} == KEYS and c["format"] == "contvines certificate 3" and 64 <= c["bits"] <= 9000, "an old or unknown format")
-    iv.prec, events, modes, half, given = c["bits"] + 64, c["events"], c["modes"], c["half"], {"slope": ZERO} | c["parameters"]
+    iv.prec, events, modes, half, data = c["bits"] + 64, c["events"], c["modes"], c["half"], {"slope": ZERO} | c["parameters"]
     last = (MIRROR.get(events[0], events[0]), -modes[0]) if half else (events[0], modes[0])
     word: Any = [(*now, *then) for now, then in zip(zip(events, modes, strict=True), [*zip(events[1:], modes[1:]), last])]
     allowed = [(a, b) in MODES[wall] or (c["frictionless"] and b == -WALL[wall]) for _, a, wall, b in word if events != "o"]
     need(all(allowed) and (events != "o" or (modes, half, c["periods"]) == ([0], False, 1)), "no machine has this word")
-    need({*given} in [ALL | own for own in OWN] and c["periods"] == int(c["periods"]) > 0, "no such numbers")
-    alike = all(given.get(a) == given.get(b) and given.get(a, ZERO)[1] == "0" for a, b in PAIRS[:2])
-    need(half in (0, 1) and (not half or (alike and given.get("slope", ZERO) == ZERO and c["periods"] % 2)), "no mirror")
-    c |= {"n": 2 if "amplitude" in given else 4, "word": word, "off": int(half and events[0] not in WALL)}
+    need({*data} in [ALL | own for own in OWN] and c["periods"] == int(c["periods"]) > 0, "no such numbers")
+    alike = all(data.get(a) == data.get(b) and data.get(a, ZERO)[1] == "0" for a, b in PAIRS[:2])
+    need(half in (0, 1) and (not half or (alike and data.get("slope", ZERO) == ZERO and c["periods"] % 2)), "no mirror")
+    c |= {"n": 2 if "amplitude" in data else 4, "word": word, "off": int(half and events[0] not in WALL)}
     boxes, claims = [proved(c, box) for box in c["boxes"]], c["claims"]
     orbits, tiles, steady, kinds = boxes[::2], boxes[1::2], claims["stable"], [box["kind"] for box in boxes[1::2] or boxes]
     need(len(orbits) == len(tiles) + 1 and all(box["q"] == 0 for box in orbits), "no chain of orbits and tiles")
-    need(tiles or (boxes[0]["parameter"] == ONE and all(k == "0" for *_, k in given.values())), "a parameter without use")
+    need(tiles or (boxes[0]["parameter"] == ONE and all(k == "0" for *_, k in data.values())), "a parameter without use")
     need({*claims} == CLAIMS and claims["existence"] is True and (steady is None or not all(kinds)), "claims of nothing")
     for tile, orbit in [*zip(tiles, orbits), *zip(tiles, orbits[1:])]:
         at, = (j for j, (_, b, r) in enumerate(tile["flat"]) if r == 0 and b != 0)

@@ -100,10 +100,10 @@ def test_cycles_near_rounding_have_the_periods_of_shooting_in_logarithms():
     def in_logarithms(y, p):
         return prey_and_predator(np.exp(y), p) / np.exp(y)
 
-    flow = cv.FlowProblem(prey_and_predator, [1.0, 0.5], {"k": 5.0})
-    cycles = cv.diagram(flow, over="k", within=(2.0, 30.0))["B2"]
-    assert "logarithm" in cycles.ended[1]
-    for i in (-len(cycles) // 4, -8):
+    flow = cv.FlowProblem(prey_and_predator, [0.2, 0.0], {"k": 0.1})
+    graph = cv.diagram(flow, over="k", within=(0.1, 10.0))
+    cycles = next(b for b in graph if b.description["word"] == "cycle")
+    for i in (len(cycles) // 2, len(cycles) - 8):
         orbit = cycles.orbit(i)
         period, _ = cycle(in_logarithms, np.log(orbit.states[0]), orbit.period, k=cycles.values[i])
-        assert orbit.period == pytest.approx(period, rel=1e-6)
+        assert orbit.period == pytest.approx(period, rel=1e-5)
