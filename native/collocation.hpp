@@ -6,7 +6,7 @@
 
 namespace collocation {
 
-constexpr double TINY = 1e-300, LEAST = 1e-18, HALF_THE_DIGITS = 0x1p-26;
+constexpr double TINY = 1e-300, LEAST = 1e-18;
 
 // One cycle: N intervals of m Gauss points with d states; `free` where the period is an unknown (autonomous flows).
 struct Cycle {
@@ -327,36 +327,7 @@ inline double solve(const System& y) {
     return sign;
 }
 
-// What a solution misses of the right sides, in their place; the largest part of a row, relative to the sum of its terms.
-inline double missed(const System& y, double* columns, double* foot) {
-    const whole d = y.node, k = y.shared, s = y.sides, K = k + s, all = y.inner + d;
-    double worst = 0.0, sum = 0.0, size = 0.0;
-    auto less = [&](double by, double from) { sum -= by * from, size += fabs(by * from); };
-    auto put = [&](double& side) { side = sum, worst = sum == 0.0 ? worst : larger(worst, fabs(sum) / size); };
-    for (whole c = 0; c < s; c++) {
-        auto shared = [&](const double* row) {
-            sum = row[k + c], size = fabs(sum);
-            for (whole j = 0; j < k; j++) less(row[j], y.at_shared[j * s + c]);
-        };
-        for (whole i = 0; i < y.count * all; i++) {
-            const double *row = y.blocks + i * (all + d), *own = y.found + i / all * all * s, *after = i / all + 1 < y.count ? own + all * s : y.found;
-            shared(columns + i * K);
-            for (whole j = 0; j < all; j++) less(row[j], own[j * s + c]);
-            for (whole j = 0; j < d; j++) less(row[all + j], (after == y.found ? y.closure : 1.0) * after[j * s + c]);
-            put(columns[i * K + k + c]);
-        }
-        for (whole r = 0; r < k; r++) {
-            shared(foot + r * K);
-            for (whole b = 0; b < y.count; b++)
-                for (whole j = 0; j < all; j++) less(y.rows[(b * k + r) * all + j], y.found[(b * all + j) * s + c]);
-            put(foot[r * K + k + c]);
-        }
-    }
-    return worst;
-}
-
-// [[F_u, F_p], [border]] x = (-F, n) and (0, 1), all in the user's units; the mesh keeps its widths. Returns the determinant's sign. Where a state
-// is near zero, orthogonal elimination loses its digits to those of the others; iterative refinement gives them back.
+// [[F_u, F_p], [border]] x = (-F, n) and (0, 1), all in the user's units; the mesh keeps its widths. Returns the determinant's sign.
 inline double bordered(const Cycle& y, double closure, double corner, const double* border, double n, double* step, double* tangent) {
     const whole N = y.count, m = y.degree, d = y.node, all = m * d, states = N * all, tail = states + y.free, size = tail + N, k = y.free + 1, K = k + 2;
     double widths_n = 0.0, widths_p = 0.0;
@@ -375,16 +346,10 @@ inline double bordered(const Cycle& y, double closure, double corner, const doub
         last[0] = border[states] * y.clock;
     }
     last[k - 1] = border[size] * y.unit + widths_p, last[k] = n + widths_n, last[k + 1] = 1.0;
-    const System system{N, all - d, d, k, 2, closure, y.blocks, y.columns, y.rows, y.foot, y.left, y.right, y.states, y.shared, y.room};
-    for (whole i = 0; i <= size; i++) step[i] = tangent[i] = 0.0;
-    auto take = [&] {
-        for (whole i = 0, a = 0; i < states; i++, a = a + 1 < d ? a + 1 : 0) step[i] += y.states[2 * i] * y.scale[a], tangent[i] += y.states[2 * i + 1] * y.scale[a];
-        if (y.free) step[states] += y.shared[0] * y.clock, tangent[states] += y.shared[1] * y.clock;
-        step[size] += y.shared[2 * k - 2] * y.unit, tangent[size] += y.shared[2 * k - 1] * y.unit;
-    };
-    const double sign = solve(system);
-    take();
-    for (double left = 1.0, share; (share = missed(system, y.columns, y.foot)) < 0.5 && (left *= share) > HALF_THE_DIGITS;) solve(system), take();
+    double sign = solve({N, all - d, d, k, 2, closure, y.blocks, y.columns, y.rows, y.foot, y.left, y.right, y.states, y.shared, y.room});
+    for (whole i = 0, a = 0; i < states; i++, a = a + 1 < d ? a + 1 : 0) step[i] = y.states[2 * i] * y.scale[a], tangent[i] = y.states[2 * i + 1] * y.scale[a];
+    if (y.free) step[states] = y.shared[0] * y.clock, tangent[states] = y.shared[1] * y.clock;
+    step[size] = y.shared[2 * k - 2] * y.unit, tangent[size] = y.shared[2 * k - 1] * y.unit;
     for (whole i = tail; i < size; i++) step[i] = -y.residual[i] - y.derivative[i] * step[size], tangent[i] = -y.derivative[i] * tangent[size];
     return sign;
 }

@@ -186,29 +186,6 @@ class CycleProblem(CycleRelatives):
         found, true = (np.take_along_axis(a, least, axis=1).sum() for a in (decay, np.abs(z.real)))
         return bool(found < 1.0 < true)
 
-    def moved(self, u: np.ndarray, p: float) -> float:
-        """Change of a cycle on a mesh with intervals half as long: of its period, of its mesh points on average, and of the parameter, each relative.
-
-        It is one step of Newton's method, without its part along the branch. An error where a state is near zero is small, but the state grows from there,
-        and the error with it: of a prey that falls to 1e-12 and recovers, the curve may be accurate to 1e-8, and the period to 1e-4.
-        """
-        if self.sparse is not None:
-            return 0.0
-        finer = self.with_unknowns(self.halved(u), p, 2 * self.intervals, self.parts_of_refined * self.copies)
-        border, step, along = np.zeros((3, finer.dimension + 1))
-        border[-1], work = 1.0, finer.workspace()
-        if not linearise(finer, finer.u0, p, work) < np.inf:
-            return 0.0
-        work.bordered(border, 0.0, step, along)
-        units = np.append(finer.column_scale, finer.parameter_scale)
-        step, along = step / units, along / units
-        step -= (along @ step) / (along @ along) * along
-        x, period, widths = finer.parts(finer.u0, p)
-        shift = np.abs(step[: finer.states].reshape(x.shape)[::2, 0] * self.node_scale / self.sizes(x))
-        free = [step[finer.states] * self.clock / period] if self.free_period else []
-        found = float(np.abs([*free, *(widths[::2] + widths[1::2]) @ shift, step[-1]]).max())
-        return found if math.isfinite(found) else 0.0
-
     # ------------------------------------------------------------------ accuracy and normal forms
     def accuracy(self, u: np.ndarray, p: float) -> float:
         """Relative accuracy of parameter, period and mesh points: of order 2 m, while the curve between mesh points has order m + 1."""
@@ -219,7 +196,7 @@ class CycleProblem(CycleRelatives):
                 missed = work.spectrum()[1]
             except np.linalg.LinAlgError:
                 missed = 0.0
-        bound = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.moved(u, p), self.uncertainty())
+        bound = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
         # the error of the trivial multiplier is a better estimate, unless its system is singular, as for nearly homoclinic orbits
         return max(bound, missed) if missed < self.flow.settings.sensible else bound
 
@@ -231,12 +208,6 @@ class CycleProblem(CycleRelatives):
         """Return the reason why Newton's method fails at the end of a branch."""
         if not evaluable:
             return self.trouble
-        x = self.curve(u)[0].reshape(-1, self.node)
-        least, most = np.abs(x).min(axis=0), np.abs(x).max(axis=0)
-        faint = np.flatnonzero((least < ROUNDED * most) & ((x > 0.0).all(axis=0) | (x < 0.0).all(axis=0)))
-        if faint.size:
-            name, share = self.flow.states[faint[0]], float((least / most)[faint[0]])
-            return f"{name} comes as near to zero as {share:.1g} of its largest value, where rounding decides; give the equations in its logarithm"
         error = self.estimated_error(u)
         return f"with {self.intervals} intervals the error of the cycle is about {error:.1g} of its size"
 

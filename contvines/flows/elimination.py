@@ -18,8 +18,6 @@ from ..core.block_cyclic import Eliminated, eliminate
 from ..core.library import native
 from ..core.multipliers.periodic_schur import multipliers
 
-HALF_THE_DIGITS = 2.0**-26  # part of its terms that a row may miss; native/ has the same constant
-
 
 class Condensed(NamedTuple):
     """Equations between neighbouring mesh points: ``left[i] x_i + right[i] x_(i + 1) + columns[i] e = 0``, with shared unknowns e.
@@ -166,53 +164,6 @@ def solve_collocation(
 ) -> Eliminated:
     """Solve the bordered collocation equations by the native core (:func:`contvines.core.block_cyclic.eliminate`), or by :func:`reference`."""
     return (eliminate if native() else reference)(blocks, columns, rows, foot, d, closure)
-
-
-def refined(
-    blocks: np.ndarray,
-    columns: np.ndarray,
-    rows: np.ndarray,
-    foot: np.ndarray,
-    d: int,
-    closure: float = 1.0,
-) -> Eliminated:
-    """Do :func:`solve_collocation` with iterative refinement, which makes the solution accurate row by row (Skeel, Math. Comp. 35 (1980) 817).
-
-    Orthogonal elimination alone loses the digits of a state that is near zero to those of the others.
-    """
-    left = 1.0
-    first = more = solve_collocation(blocks, columns, rows, foot, d, closure)
-    states, shared = first.states, first.shared
-    while True:
-        columns, foot, share = _residuals(blocks, columns, rows, foot, d, closure, more)
-        left *= share
-        if not (share < 0.5 and left > HALF_THE_DIGITS):
-            return first._replace(states=states, shared=shared)
-        more = solve_collocation(blocks, columns, rows, foot, d, closure)
-        states, shared = states + more.states, shared + more.shared
-
-
-def _residuals(
-    blocks: np.ndarray,
-    columns: np.ndarray,
-    rows: np.ndarray,
-    foot: np.ndarray,
-    d: int,
-    closure: float,
-    found: Eliminated,
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Columns and foot with what a solution misses as right-hand sides; and the largest part of a row, relative to the sum of its terms."""
-    k, x, e = len(foot), found.states, found.shared
-    x = np.concatenate([x, np.concatenate([x[1:, :d], closure * x[:1, :d]])], axis=1)
-    border, nodes = rows.transpose(1, 0, 2).reshape(k, -1), found.states.reshape(-1, e.shape[1])
-    rest, share = [], 0.0
-    for given, matrix, by in ((columns, blocks, x), (foot, border, nodes)):
-        own, side = given[..., :k], given[..., k:]
-        miss = side - own @ e - matrix @ by
-        size = np.abs(side) + np.abs(own) @ np.abs(e) + np.abs(matrix) @ np.abs(by)
-        share = max(share, float(np.divide(abs(miss), size, out=np.zeros_like(miss), where=miss != 0).max()))
-        rest.append(np.concatenate([own, miss], axis=-1))
-    return rest[0], rest[1], share
 
 
 def reference(

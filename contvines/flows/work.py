@@ -13,7 +13,7 @@ import numpy as np
 from ..core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
 from ..core.table import pack, place
 from . import mesh, sparse
-from .elimination import condense, multipliers_of, refined
+from .elimination import condense, multipliers_of, solve_collocation
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -159,7 +159,7 @@ class CycleWork:
         self, columns: np.ndarray, rows: np.ndarray, foot: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, float]:
         """Solve the collocation equations: values at the nodes, shared unknowns, sign of the determinant."""
-        solved = refined(self.blocks, columns, rows, foot, self.problem.node, self.closure)
+        solved = solve_collocation(self.blocks, columns, rows, foot, self.problem.node, self.closure)
         self.mesh = solved.left, solved.right
         return solved.states, solved.shared, solved.sign
 
